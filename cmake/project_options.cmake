@@ -1,0 +1,27 @@
+# Options of this build. Nothing here reaches a project that uses the library.
+if(CMAKE_SOURCE_DIR STREQUAL CMAKE_CURRENT_SOURCE_DIR)
+  set(PCL_FLOAM_TOP_LEVEL ON)
+else()
+  set(PCL_FLOAM_TOP_LEVEL OFF)
+endif()
+
+option(PCL_FLOAM_BUILD_EXAMPLES "Build the examples, the tools and the simulator" ${PCL_FLOAM_TOP_LEVEL})
+option(PCL_FLOAM_BUILD_TESTS "Build the tests" ${PCL_FLOAM_TOP_LEVEL})
+option(PCL_FLOAM_INSTALL "Create the install target" ${PCL_FLOAM_TOP_LEVEL})
+option(PCL_FLOAM_WARNINGS_AS_ERRORS "Treat warnings of this project's own code as errors" OFF)
+set(PCL_FLOAM_SANITIZER "" CACHE STRING "Sanitizers for this project's own targets, e.g. address,undefined or thread")
+
+# With no build type at all an odometry is ten times too slow: say so, but leave the choice to the user.
+if(PCL_FLOAM_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  message(STATUS "pcl_floam: no CMAKE_BUILD_TYPE given; -DCMAKE_BUILD_TYPE=Release makes it about ten times faster")
+endif()
+
+# Warnings and sanitizers of this project's own targets; linked PRIVATE, never installed.
+add_library(pcl_floam_build_flags INTERFACE)
+target_compile_options(pcl_floam_build_flags INTERFACE
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-qual>
+  $<$<AND:$<BOOL:${PCL_FLOAM_WARNINGS_AS_ERRORS}>,$<CXX_COMPILER_ID:GNU,Clang,AppleClang>>:-Werror>)
+if(PCL_FLOAM_SANITIZER)
+  target_compile_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER} -fno-omit-frame-pointer)
+  target_link_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER})
+endif()

@@ -1,0 +1,86 @@
+/// \file cloud_view.h
+/// One scan of any point type, seen without copying it and without templates.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+#include <pcl/common/io.h>
+#include <pcl/point_cloud.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Where in a point's bytes a field lies, and its type.
+struct FieldView {
+  enum class Type : std::uint8_t { none, int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+  Type type = Type::none;
+  std::uint32_t offset = 0;  ///< bytes from the start of the point
+
+  [[nodiscard]] bool exists() const { return type != Type::none; }
+
+  /// The field's value in the point that starts at \p point. The field must exist.
+  [[nodiscard]] double read(const std::uint8_t* point) const;
+};
+
+/// A read-only view of a cloud's memory, of whatever point type.
+///
+/// This is what the compiled core works on: one way in for `pcl::PointCloud` of every point type and for
+/// `pcl::PCLPointCloud2`. It owns nothing: the cloud must outlive it.
+struct CloudView {
+  const std::uint8_t* data = nullptr;
+  std::size_t size = 0;    ///< number of points
+  std::size_t stride = 0;  ///< bytes from one point to the next
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t x_offset = 0;  ///< x, y and z are float32
+  std::uint32_t y_offset = 0;
+  std::uint32_t z_offset = 0;
+  FieldView ring;       ///< field `ring`, `line` or `channel`
+  FieldView time;       ///< field `time`, `t`, `timestamp`, `time_stamp`, `offset_time` or `relative_time`
+  FieldView intensity;  ///< field `intensity` or `reflectivity`
+  std::string_view time_name;  ///< which of the names it is; tells the likely unit
+
+  [[nodiscard]] const std::uint8_t* point(std::size_t i) const { return data + i * stride; }
+  [[nodiscard]] float x(std::size_t i) const { return readFloat(point(i) + x_offset); }
+  [[nodiscard]] float y(std::size_t i) const { return readFloat(point(i) + y_offset); }
+  [[nodiscard]] float z(std::size_t i) const { return readFloat(point(i) + z_offset); }
+  [[nodiscard]] bool isOrganized() const { return height > 1; }
+
+  static float readFloat(const std::uint8_t* bytes)
+  {
+    float value;
+    std::memcpy(&value, bytes, sizeof(value));
+    return value;
+  }
+};
+
+/// Fills the field offsets of \p view from PCL's list of fields.
+/// \throws std::invalid_argument if x, y or z is missing or not float32.
+void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& view);
+
+/// The view of a cloud of any PCL point type with x, y, z.
+template <typename PointT>
+[[nodiscard]] CloudView viewOf(const pcl::PointCloud<PointT>& cloud)
+{
+  CloudView view;
+  describeFields(pcl::getFields<PointT>(), view);
+  view.data = reinterpret_cast<const std::uint8_t*>(cloud.points.data());
+  view.size = cloud.points.size();
+  view.stride = sizeof(PointT);
+  view.width = cloud.width;
+  view.height = cloud.height;
+  return view;
+}
+
+/// The view of a cloud whose point type is known only at run time.
+/// \throws std::invalid_argument if x, y or z is missing or not float32, or the blob is shorter than its
+/// width times height points.
+[[nodiscard]] CloudView viewOf(const pcl::PCLPointCloud2& cloud);
+
+}  // namespace pcl_floam

@@ -1,0 +1,32 @@
+/// \file features.h
+/// Edge and plane features of one scan.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A point of a scan that was found to lie on an edge or on a plane.
+struct Feature {
+  float x = 0.0F;  ///< m, in the sensor's frame
+  float y = 0.0F;
+  float z = 0.0F;
+  float time = 0.0F;        ///< fraction of the sweep, in [0,1]
+  float smoothness = 0.0F;  ///< sigma of Eq. 1, m
+  std::int32_t index = -1;  ///< of the point in its cloud
+};
+
+/// The feature sets E_k and S_k of one scan.
+struct FeatureSet {
+  std::vector<Feature> edges;
+  std::vector<Feature> planes;
+
+  void clear()
+  {
+    edges.clear();
+    planes.clear();
+  }
+};
+
+}  // namespace pcl_floam

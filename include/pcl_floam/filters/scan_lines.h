@@ -1,0 +1,58 @@
+/// \file scan_lines.h
+/// Who is a point's neighbour: its scan line m and its place n within the line.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/sensor_model.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Where the scan lines come from.
+enum class ScanLineSource : std::uint8_t {
+  automatic,          ///< the first of the others, in this order, that the cloud supports
+  ring_field,         ///< a field `ring`, `line` or `channel`
+  organized_rows,     ///< the rows (or columns) of an organised cloud
+  file_order,         ///< points stored line by line, as in KITTI's files
+  elevation_table,    ///< the nearest beam of a named sensor
+  elevation_clusters  ///< clusters of the elevations found in the scan itself
+};
+
+/// Why a scan has no lines.
+enum class ScanLineFailure : std::uint8_t { none, empty_cloud, source_not_available, no_line_structure };
+
+[[nodiscard]] const char* toString(ScanLineSource source);
+[[nodiscard]] const char* toString(ScanLineFailure failure);
+
+/// The points of a scan sorted into scan lines.
+///
+/// Holds only measurable points: finite and not at (0,0,0). The points of line m are
+/// `index[begin[m]] ... index[begin[m + 1] - 1]`, in the order in which the head swept over them.
+struct ScanLines {
+  std::vector<std::int32_t> index;  ///< point indices into the cloud, line after line
+  std::vector<std::int32_t> begin;  ///< lines() + 1 positions in \ref index
+  ScanLineSource source = ScanLineSource::automatic;  ///< what was used; `automatic` if nothing could be
+  ScanLineFailure failure = ScanLineFailure::none;
+  /// Fraction in [0,1] of neighbouring points that agree with the structure found (same line, right order).
+  float confidence = 0.0F;
+  /// The points' order within a line was made by azimuth, since the cloud's own order was not a sweep's.
+  bool sorted_by_azimuth = false;
+
+  [[nodiscard]] std::size_t lines() const { return begin.empty() ? 0 : begin.size() - 1; }
+  [[nodiscard]] bool valid() const { return failure == ScanLineFailure::none && lines() > 0; }
+};
+
+/// Finds the scan lines of a cloud.
+///
+/// \param cloud  one scan in the sensor's frame
+/// \param sensor elevation table for `elevation_table`; in the automatic order it is tried before
+///               `elevation_clusters` when the sensor is named
+/// \param source `automatic`, or the one source to use
+/// \param[out] lines overwritten; its memory is reused. On failure it has no lines and says why.
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines);
+
+}  // namespace pcl_floam

@@ -1,0 +1,32 @@
+/// \file sensor_model.h
+/// The beams of known lidars.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A rotating lidar: its beams' elevations.
+struct SensorModel {
+  std::string name = "auto";      ///< "auto" when nothing is known about the sensor
+  std::vector<float> elevations;  ///< rad above the horizontal, rising; empty for "auto"
+
+  [[nodiscard]] bool isKnown() const { return !elevations.empty(); }
+};
+
+/// The model of a sensor by name: auto, vlp16, vlp32c, hdl32, hdl64, os32, os64, os128, pandar40, pandarxt32,
+/// pandar64, pandar128. Elevations are nominal values of the makers' manuals.
+/// \throws std::invalid_argument for an unknown name; the message lists the known ones.
+[[nodiscard]] SensorModel sensorModel(std::string_view name);
+
+/// The names that \ref sensorModel knows.
+[[nodiscard]] std::vector<std::string> sensorNames();
+
+/// A sensor of the user's own.
+/// \param elevations_degrees one per beam, in any order
+/// \throws std::invalid_argument if it has fewer than 2 beams or one is not within [-90, 90].
+[[nodiscard]] SensorModel customSensor(std::string name, const std::vector<float>& elevations_degrees);
+
+}  // namespace pcl_floam

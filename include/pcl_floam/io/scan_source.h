@@ -1,0 +1,68 @@
+/// \file scan_source.h
+/// A folder of scans on disk: PCD files or KITTI's .bin files.
+#pragma once
+
+#include <pcl/PCLPointCloud2.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A file could not be read or written. `what()` names the file, the place in it, and the reason.
+class FileError : public std::runtime_error {
+public:
+  FileError(std::filesystem::path path, const std::string& reason)
+      : std::runtime_error(path.string() + ": " + reason), path_(std::move(path))
+  {
+  }
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+private:
+  std::filesystem::path path_;
+};
+
+/// Format of a folder's scans.
+enum class ScanFormat { pcd, kitti_bin };
+
+/// The scans of a folder, in natural order of their names (scan2 before scan10).
+///
+/// Beside the scans, or in the folder above them, a `times.txt` may give one time in seconds per scan.
+class ScanSource {
+public:
+  /// Lists the folder. Reads no scan yet.
+  /// \throws FileError if the folder cannot be read, holds no `.pcd` or `.bin` file or both kinds, or if
+  ///         `times.txt` has a line that is no number or does not fit the number of scans.
+  explicit ScanSource(const std::filesystem::path& folder);
+
+  [[nodiscard]] std::size_t size() const { return files_.size(); }
+  [[nodiscard]] ScanFormat format() const { return format_; }
+  [[nodiscard]] const std::filesystem::path& path(std::size_t i) const { return files_.at(i); }
+
+  /// Seconds, from `times.txt`; nothing without that file.
+  [[nodiscard]] std::optional<double> stamp(std::size_t i) const;
+
+  /// Reads scan \p i with all its fields; KITTI's have x, y, z and intensity.
+  /// \throws FileError if the file is missing, truncated or no such file.
+  void read(std::size_t i, pcl::PCLPointCloud2& cloud) const;
+
+private:
+  std::vector<std::filesystem::path> files_;
+  std::vector<double> stamps_;
+  ScanFormat format_ = ScanFormat::pcd;
+};
+
+/// Reads one PCD file (ascii, binary, binary_compressed).
+/// \throws FileError as ScanSource::read.
+void readPcd(const std::filesystem::path& file, pcl::PCLPointCloud2& cloud);
+
+/// Reads one KITTI file: float32 x, y, z, intensity per point.
+/// \throws FileError as ScanSource::read.
+void readKittiBin(const std::filesystem::path& file, pcl::PCLPointCloud2& cloud);
+
+}  // namespace pcl_floam

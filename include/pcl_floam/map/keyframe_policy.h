@@ -1,0 +1,17 @@
+/// \file keyframe_policy.h
+/// Which scans are added to the map.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+namespace pcl_floam {
+
+/// A scan becomes a keyframe when the sensor has moved by more than one of the thresholds since the last one.
+struct KeyframePolicy {
+  double translation = 0.5;  ///< m, >= 0; 0 makes every scan a keyframe. Reasonable: 0.1 (indoors) to 2
+  double rotation = 0.1;     ///< rad, >= 0; reasonable: 0.05 to 0.3
+
+  [[nodiscard]] bool isKeyframe(const SE3& last_keyframe, const SE3& pose) const;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,92 @@
+/// \file keyframe_voxel_map.h
+/// The global map: an edge layer and a plane layer of down-sampled points around the sensor.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/map/neighbor_search.h>
+
+#include <pcl/memory.h>
+#include <pcl/point_cloud.h>
+#include <pcl/point_types.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace pcl_floam {
+
+/// The search structure that serves the nearest neighbours. Both give the same neighbours.
+enum class SearchMethod : std::uint8_t {
+  voxel,  ///< the map's own hashed voxels: nothing to build
+  kdtree  ///< FLANN's KD-tree (the paper's), rebuilt after each keyframe
+};
+
+/// The two kinds of features, and layers of the map.
+enum class FeatureKind : std::uint8_t { edge, plane };
+
+[[nodiscard]] const char* toString(SearchMethod method);
+
+struct MapParameters {
+  double edge_voxel_size = 0.2;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
+  double plane_voxel_size = 0.4;  ///< m, > 0. Reasonable: 0.1 to 1
+  double horizon = 150.0;         ///< m, > 0: points farther from the sensor are forgotten
+  SearchMethod search = SearchMethod::voxel;
+};
+
+/// \throws std::invalid_argument naming the first setting that is out of its range.
+void validate(const MapParameters& parameters);
+
+/// The paper's global edge map and global plane map.
+///
+/// Points lie in 64-bit hashed voxels, as single-precision offsets from their voxel: the map is as precise
+/// a thousand kilometres from its origin as at it. A voxel's point is the mean of the points that fell into
+/// it.
+///
+/// Reading is const and safe from several threads; writing needs exclusive access.
+class KeyframeVoxelMap {
+public:
+  using Ptr = pcl::shared_ptr<KeyframeVoxelMap>;
+  using ConstPtr = pcl::shared_ptr<const KeyframeVoxelMap>;
+
+  /// \throws std::invalid_argument if a parameter is out of its range.
+  explicit KeyframeVoxelMap(const MapParameters& parameters = {});
+  KeyframeVoxelMap(const KeyframeVoxelMap& other);
+  KeyframeVoxelMap(KeyframeVoxelMap&& other) noexcept;
+  KeyframeVoxelMap& operator=(const KeyframeVoxelMap& other);
+  KeyframeVoxelMap& operator=(KeyframeVoxelMap&& other) noexcept;
+  ~KeyframeVoxelMap();
+
+  /// Adds the features of one keyframe and forgets what lies beyond the horizon around it.
+  /// \param features      in the sensor's frame, undistorted; their `time` is not used
+  /// \param world_T_sensor finite
+  void insert(const FeatureSet& features, const SE3& world_T_sensor);
+
+  /// Adds one point to a layer. \p point is in the world frame, in m, and must be finite.
+  void insertPoint(FeatureKind kind, const Eigen::Vector3d& point);
+
+  /// Forgets all points farther than the horizon from \p center.
+  void crop(const Eigen::Vector3d& center);
+
+  void clear();
+
+  [[nodiscard]] std::size_t size(FeatureKind kind) const;
+  [[nodiscard]] bool empty() const { return size(FeatureKind::edge) == 0 && size(FeatureKind::plane) == 0; }
+
+  /// The layer's nearest-neighbour search, by the method of the parameters.
+  [[nodiscard]] const NeighborSearch& search(FeatureKind kind) const;
+
+  /// All points of a layer in the world frame, in m, in an order that depends on the insertions alone.
+  [[nodiscard]] std::vector<Eigen::Vector3d> points(FeatureKind kind) const;
+
+  /// As \ref points, as a cloud that PCL can save, show and filter. Single precision.
+  [[nodiscard]] pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(FeatureKind kind) const;
+
+  [[nodiscard]] const MapParameters& parameters() const;
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pcl_floam

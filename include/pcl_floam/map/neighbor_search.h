@@ -1,0 +1,45 @@
+/// \file neighbor_search.h
+/// The one interface of the voxel search and of FLANN's KD-tree.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A map point near a query, relative to the query: exact also far from the origin.
+struct Neighbor {
+  Eigen::Vector3f offset;          ///< neighbour minus query, m
+  float squared_distance = 0.0F;   ///< m^2
+};
+
+/// Most neighbours that one nearest-neighbour query can ask for.
+constexpr int kMaxNeighbors = 20;
+
+/// Fixed room for the neighbours of one query, nearest first: no allocation.
+struct Neighbors {
+  std::array<Neighbor, kMaxNeighbors> neighbor;
+  int count = 0;
+
+  const Neighbor& operator[](int i) const { return neighbor[static_cast<std::size_t>(i)]; }
+};
+
+/// Nearest neighbours among the points of a map layer.
+class NeighborSearch {
+public:
+  virtual ~NeighborSearch() = default;
+
+  /// The up to \p k nearest points within \p radius of \p query, nearest first.
+  /// \param query  world frame, m; a non-finite one has no neighbours
+  /// \param k      1 to kMaxNeighbors
+  /// \param radius m, > 0
+  virtual void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const = 0;
+
+  /// All points within \p radius of \p query, in no particular order. Replaces the contents of \p neighbors.
+  virtual void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const = 0;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,84 @@
+/// \file odometry.h
+/// The paper's system: from one scan after another to a trajectory and a map.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/odometry/odometry_parameters.h>
+#include <pcl_floam/odometry/odometry_report.h>
+
+#include <pcl/memory.h>
+#include <pcl/point_cloud.h>
+
+#include <memory>
+#include <optional>
+
+namespace pcl_floam {
+
+/// The odometry for scans whose point type is known only at run time (\ref CloudView).
+/// Most users want \ref Odometry.
+class OdometryPipeline {
+public:
+  /// \throws std::invalid_argument if a parameter is out of its range.
+  explicit OdometryPipeline(const OdometryParameters& parameters = {});
+  OdometryPipeline(const OdometryPipeline& other);
+  OdometryPipeline(OdometryPipeline&& other) noexcept;
+  OdometryPipeline& operator=(const OdometryPipeline& other);
+  OdometryPipeline& operator=(OdometryPipeline&& other) noexcept;
+  ~OdometryPipeline();
+
+  /// Takes the next scan. Never throws for data: the report tells what came of it.
+  /// \param scan  one sweep in the sensor's frame
+  /// \param stamp seconds, any epoch, of the same instant of every sweep; without it scans are taken to
+  ///              follow each other at a constant period
+  const OdometryReport& track(const CloudView& scan, std::optional<double> stamp = std::nullopt);
+
+  /// Tells that a scan is missing (unreadable, dropped): the pose moves on by prediction.
+  const OdometryReport& trackMissing(std::optional<double> stamp = std::nullopt);
+
+  /// The last report.
+  [[nodiscard]] const OdometryReport& report() const;
+
+  /// `world_T_sensor` of the last scan, at the instant that the parameters name.
+  [[nodiscard]] SE3 pose() const;
+
+  /// Edge and plane layer around the sensor.
+  [[nodiscard]] const KeyframeVoxelMap& map() const;
+
+  [[nodiscard]] const OdometryParameters& parameters() const;
+
+  /// Forgets map and motion; the next scan starts at \p world_T_sensor.
+  void reset(const SE3& world_T_sensor = {});
+
+private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// F-LOAM for scans of type \p PointT: any PCL point type with x, y, z.
+///
+/// \code
+/// pcl_floam::Odometry<pcl::PointXYZI> odometry;
+/// for (const auto& scan : scans) {
+///   const auto& report = odometry.track(*scan);
+///   std::cout << report.world_T_sensor.translation.transpose() << '\n';
+/// }
+/// \endcode
+template <typename PointT>
+class Odometry : public OdometryPipeline {
+public:
+  using Ptr = pcl::shared_ptr<Odometry<PointT>>;
+  using ConstPtr = pcl::shared_ptr<const Odometry<PointT>>;
+  using PointCloud = pcl::PointCloud<PointT>;
+
+  using OdometryPipeline::OdometryPipeline;
+  using OdometryPipeline::track;
+
+  /// Takes the next scan; see OdometryPipeline::track.
+  const OdometryReport& track(const PointCloud& scan, std::optional<double> stamp = std::nullopt)
+  {
+    return track(viewOf(scan), stamp);
+  }
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,40 @@
+/// \file odometry_parameters.h
+/// Every setting of the odometry, with its default.
+#pragma once
+
+#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/map/keyframe_policy.h>
+#include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/registration/registration_parameters.h>
+
+namespace pcl_floam {
+
+/// The instant of the sweep that a pose describes.
+enum class PoseInstant : std::uint8_t { start, middle, end };
+
+/// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
+struct OdometryParameters {
+  SensorModel sensor;  ///< default "auto"
+  ScanLineSource scan_line_source = ScanLineSource::automatic;
+  ScanTimingSource timing_source = ScanTimingSource::automatic;
+  ScanRotation rotation = ScanRotation::automatic;
+  /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the
+  /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205.
+  double vertical_correction = 0.0;
+  /// Seconds from one sweep to the next; 0 takes it from the scans' stamps. Matters only to scans whose
+  /// time field spans less than the period, and to gaps.
+  double scan_period = 0.0;
+  FeatureParameters features;
+  CompensationMode compensation = CompensationMode::two_stage;
+  PoseInstant pose_instant = PoseInstant::end;  ///< of the poses given out
+  RegistrationParameters registration;
+  KeyframePolicy keyframe;
+  MapParameters map;
+  int threads = 1;  ///< 1 or more; the result does not depend on it
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,53 @@
+/// \file odometry_report.h
+/// What the odometry did with one scan.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/registration/registration_report.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace pcl_floam {
+
+/// How a scan's pose came about.
+enum class TrackingState : std::uint8_t {
+  initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
+  tracked,      ///< registered with the map
+  predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
+  not_started   ///< no usable scan yet: the pose is the initial pose
+};
+
+[[nodiscard]] const char* toString(TrackingState state);
+
+/// Milliseconds spent in each stage of the data flow.
+struct StageTimes {
+  double scan_lines = 0.0;  ///< scan lines and times
+  double features = 0.0;
+  double compensation = 0.0;  ///< both stages
+  double registration = 0.0;
+  double map = 0.0;
+  double total = 0.0;
+};
+
+/// The outcome of one call of `Odometry::track`.
+struct OdometryReport {
+  TrackingState state = TrackingState::not_started;
+  std::string reason;           ///< why it was not `tracked`; empty otherwise
+  SE3 world_T_sensor;           ///< at the instant of the sweep that the parameters name
+  ScanLineSource scan_line_source = ScanLineSource::automatic;
+  float scan_line_confidence = 0.0F;
+  std::size_t scan_lines = 0;
+  ScanTimingSource timing_source = ScanTimingSource::none;
+  std::size_t points = 0;       ///< points in the scan
+  std::size_t edges = 0;        ///< edge features extracted
+  std::size_t planes = 0;       ///< plane features extracted
+  bool keyframe = false;        ///< the scan was added to the map
+  RegistrationReport registration;
+  StageTimes milliseconds;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,55 @@
+/// \file registration_parameters.h
+/// Settings of the pose estimation.
+#pragma once
+
+#include <cstdint>
+
+namespace pcl_floam {
+
+/// How the smoothness of a feature weighs its residual (Eq. 9).
+enum class WeightScheme : std::uint8_t {
+  uniform,   ///< all alike
+  inverted,  ///< what the paper's text wants: exp(+sigma) on edges, exp(-sigma) on planes
+  printed    ///< as Eq. 9 is printed: exp(-sigma) on edges, exp(+sigma) on planes
+};
+
+/// What the weights of one kind of feature add up to.
+enum class WeightNormalization : std::uint8_t {
+  mean_one,  ///< their number: the residuals keep their units and each feature its say
+  sum_one    ///< 1, as Eq. 9: edges as a whole count as much as planes as a whole
+};
+
+/// Influence of large residuals.
+enum class RobustKernel : std::uint8_t { none, huber, cauchy, geman_mcclure };
+
+enum class SolverKind : std::uint8_t { gauss_newton, ceres };
+
+[[nodiscard]] const char* toString(WeightScheme scheme);
+[[nodiscard]] const char* toString(WeightNormalization normalization);
+[[nodiscard]] const char* toString(RobustKernel kernel);
+[[nodiscard]] const char* toString(SolverKind solver);
+
+/// Settings of \ref EdgePlaneRegistration.
+struct RegistrationParameters {
+  SolverKind solver = SolverKind::gauss_newton;
+  int max_iterations = 30;            ///< each with fresh correspondences; >= 1
+  double translation_epsilon = 1e-3;  ///< m; converged when a step is smaller than this ...
+  double rotation_epsilon = 2e-4;     ///< ... and smaller than this, in rad
+  int edge_neighbors = 5;             ///< map points a line is fitted to; 3 to 20
+  int plane_neighbors = 5;            ///< map points a plane is fitted to; 4 to 20
+  double max_neighbor_distance = 1.0; ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
+  double line_ratio = 3.0;            ///< a line's largest eigenvalue must exceed this times the second; > 1
+  double plane_ratio = 3.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
+  double plane_spread = 0.02;         ///< and must exceed this times the largest: no plane through a line; [0, 1)
+  WeightScheme weights = WeightScheme::uniform;
+  WeightNormalization weight_normalization = WeightNormalization::mean_one;
+  RobustKernel kernel = RobustKernel::cauchy;
+  /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
+  double kernel_scale = 0.05;
+  int min_correspondences = 20;       ///< fewer give no pose; >= 6
+};
+
+/// \throws std::invalid_argument naming the first setting that is out of its range.
+void validate(const RegistrationParameters& parameters);
+
+}  // namespace pcl_floam

@@ -1,0 +1,60 @@
+/// \file registration_report.h
+/// What came of a registration: not only the pose.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Why the iterations ended.
+enum class Termination : std::uint8_t {
+  not_run,
+  converged,              ///< the last step was below the thresholds
+  iteration_limit,        ///< stopped by the maximum number of iterations; the pose is usable
+  too_few_features,       ///< the source has too few features to constrain a pose
+  empty_target,           ///< nothing to register against
+  too_few_correspondences,///< too few source features have a line or plane nearby
+  degenerate,             ///< the correspondences constrain no direction at all
+  invalid_input           ///< a non-finite guess or non-finite result
+};
+
+[[nodiscard]] const char* toString(Termination termination);
+
+/// A direction of motion that the correspondences hardly constrain.
+struct WeakDirection {
+  /// Unit direction in (translation, rotation) about the sensor's position, in the world's axes; rotation
+  /// components are scaled by the scene's size, so that both are metres of displacement of a typical point.
+  Vector6 direction = Vector6::Zero();
+  double eigenvalue = 0.0;  ///< of the information per correspondence, in [0,1]; 1/6 is the average
+};
+
+/// The outcome of one registration.
+struct RegistrationReport {
+  Termination termination = Termination::not_run;
+  int iterations = 0;
+  int edge_correspondences = 0;   ///< of the last iteration
+  int plane_correspondences = 0;  ///< of the last iteration
+  int edge_inliers = 0;           ///< those with a robust weight of at least one half
+  int plane_inliers = 0;
+  double cost = 0.0;          ///< half the sum of weighted squared residuals, m^2
+  double residual_rms = 0.0;  ///< weighted root mean square of the residuals, m
+  SE3 target_T_source;        ///< the result; the guess when it failed
+  /// J^T W J of the last iteration. Perturbation order (translation m, rotation rad), on the left, with the
+  /// rotation about the sensor's position and the target's axes.
+  Matrix6 information = Matrix6::Zero();
+  /// Covariance of the pose in the same parametrisation: the information's inverse times the residuals'
+  /// variance. Weak directions have a variance too large to be used, not infinity.
+  Matrix6 covariance = Matrix6::Zero();
+  std::vector<WeakDirection> weak_directions;
+
+  [[nodiscard]] bool hasConverged() const
+  {
+    return termination == Termination::converged || termination == Termination::iteration_limit;
+  }
+};
+
+}  // namespace pcl_floam
