@@ -39,6 +39,11 @@ struct ScanLines {
   ScanLineFailure failure = ScanLineFailure::none;
   /// Fraction in [0,1] of neighbouring points that agree with the structure found (same line, right order).
   float confidence = 0.0F;
+  /// `organized_rows` only: lines are the cloud's columns, firings its rows (some drivers transpose).
+  bool transposed = false;
+  /// `file_order` only: lines begin at the front and azimuth rises, as in KITTI's files, which were sorted
+  /// afterwards: the order does not show how the head turned.
+  bool kitti_order = false;
   /// The points' order within a line was made by azimuth, since the cloud's own order was not a sweep's.
   bool sorted_by_azimuth = false;
 

@@ -5,8 +5,8 @@
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -24,26 +24,38 @@ enum class ScanTimingSource : std::uint8_t {
 /// Sense of the head's rotation seen from above (+z towards the viewer).
 enum class ScanRotation : std::uint8_t { automatic, clockwise, counterclockwise };
 
-/// Each point's time as a fraction of the sweep.
+/// When each point was measured, as a fraction of the sweep.
+///
+/// A model, not a list: times are computed only for the points that are asked for.
 struct ScanTiming {
-  std::vector<float> time;  ///< one per point of the cloud, in [0,1]: 0 = start, 1 = end; 0 where unknown
   ScanTimingSource source = ScanTimingSource::none;
-  double start = 0.0;     ///< seconds, of the first measurement in the time field's own clock; 0 without one
-  double duration = 0.0;  ///< seconds from time 0 to time 1; 0 where it is not known (one turn then)
-  bool valid() const { return source != ScanTimingSource::none; }
+  double start = 0.0;     ///< seconds, in the time field's own clock; 0 without one
+  double duration = 0.0;  ///< seconds from fraction 0 to fraction 1; 0 where not known (one turn then)
+  double seconds_per_unit = 1.0;  ///< of the time field
+  double start_azimuth = 0.0;     ///< rad; source `azimuth`: where the sweep begins
+  bool clockwise = true;          ///< source `azimuth`: seen from above
+  /// Source `azimuth`: the cloud's order is the firing order, which tells the sweep's first points from its last.
+  bool firing_order = false;
+
+  [[nodiscard]] bool valid() const { return source != ScanTimingSource::none; }
+
+  /// Fraction of the sweep in [0,1] at which point \p i was measured: 0 = start, 1 = end. Where it is unknown (no
+  /// source, a time that is not finite) it is 1, the instant to which points are compensated by default.
+  [[nodiscard]] float at(const CloudView& cloud, std::size_t i) const;
 };
 
-/// Finds the points' times.
+/// Finds out how the points' times can be told.
 ///
-/// Without a time field, KITTI's convention is used for clouds in file order, which do not show the firing
-/// order: the head turns clockwise, the sweep begins and ends at the rear.
+/// Without a time field, KITTI's convention is used for clouds in KITTI's file order, which does not show the
+/// firing order: the head turns clockwise, the sweep begins and ends at the rear.
 ///
 /// \param cloud    one scan in the sensor's frame
 /// \param lines    its scan lines; their order shows the direction of rotation
 /// \param source   `automatic`, or the one source to use
 /// \param rotation `automatic` to measure it, else the given one; used by source `azimuth` only
-/// \param[out] timing overwritten; `source` is `none` when no time can be told
-void findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source, ScanRotation rotation,
-                    ScanTiming& timing);
+/// \return a timing whose `source` is `none` when no time can be told
+[[nodiscard]] ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines,
+                                        ScanTimingSource source = ScanTimingSource::automatic,
+                                        ScanRotation rotation = ScanRotation::automatic);
 
 }  // namespace pcl_floam

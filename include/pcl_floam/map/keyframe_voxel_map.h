@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -62,8 +63,8 @@ public:
   /// \param world_T_sensor finite
   void insert(const FeatureSet& features, const SE3& world_T_sensor);
 
-  /// Adds one point to a layer. \p point is in the world frame, in m, and must be finite.
-  void insertPoint(FeatureKind kind, const Eigen::Vector3d& point);
+  /// Adds points to a layer, as they are in a saved map. World frame, m; points that are not finite are left out.
+  void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
 
   /// Forgets all points farther than the horizon from \p center.
   void crop(const Eigen::Vector3d& center);

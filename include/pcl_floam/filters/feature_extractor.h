@@ -1,0 +1,27 @@
+/// \file feature_extractor.h
+/// Edges and planes of one scan, for every point type: the core of \ref FeatureExtraction.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+
+namespace pcl_floam {
+
+/// Extracts the edge set E_k and the plane set S_k of a scan (the paper's "Sensor Model and Feature Extraction").
+///
+/// Edges are the points of highest smoothness in each sector of each scan line, planes those of lowest
+/// smoothness, spread evenly over the sector. Points on the far side of a depth step (whose place depends on
+/// what hides them), points on surfaces seen at grazing incidence, and points out of range are left out.
+///
+/// \param cloud      one scan in the sensor's frame
+/// \param lines      its scan lines; without any there are no features
+/// \param timing     the points' times
+/// \param parameters must be valid (\ref validate)
+/// \param[out] features overwritten; its memory is reused. In the order of the scan lines.
+void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
+                     const FeatureParameters& parameters, FeatureSet& features);
+
+}  // namespace pcl_floam

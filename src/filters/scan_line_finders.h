@@ -1,0 +1,39 @@
+/// \file scan_line_finders.h
+/// The ways to find scan lines; each returns false if the cloud does not support it.
+#pragma once
+
+#include <pcl_floam/filters/scan_lines.h>
+
+#include <cmath>
+
+namespace pcl_floam {
+
+/// A return that was measured: finite, and not the (0,0,0) that stands for "no return".
+inline bool isMeasurable(const CloudView& cloud, std::size_t i)
+{
+  const float x = cloud.x(i);
+  const float y = cloud.y(i);
+  const float z = cloud.z(i);
+  const float sum = std::abs(x) + std::abs(y) + std::abs(z);
+  return sum > 0.0F && std::isfinite(sum);
+}
+
+/// A sensor has no more scan lines than this.
+constexpr int kMaxScanLines = 1024;
+
+bool linesFromRingField(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
+bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
+bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
+
+/// Sorts the measurable points by their line, keeping the cloud's order within a line.
+/// \param line_of_point one per point of the cloud; negative for points on no line
+void groupByLine(const CloudView& cloud, const std::vector<std::int32_t>& line_of_point, int line_count,
+                 ScanLines& lines);
+
+/// Sorts each line by azimuth if the cloud's own order is not that of a sweep; sets the confidence to the
+/// fraction of steps in the prevailing direction.
+void ensureSweepOrder(const CloudView& cloud, ScanLines& lines);
+
+}  // namespace pcl_floam

@@ -1,0 +1,200 @@
+// Scan lines that the cloud's layout tells: ring field, organised rows, file order.
+#include "filters/azimuth.h"
+#include "filters/scan_line_finders.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Fewer lines than this are no rotating lidar's.
+constexpr int kMinScanLines = 2;
+
+/// Steps between neighbours of a line that go the prevailing way, in a cloud that keeps a sweep's order.
+/// Neighbours swap places where lasers' azimuths differ and where the range noise exceeds the spacing.
+constexpr float kSweepOrderConfidence = 0.8F;
+
+float pseudoAzimuthOf(const CloudView& cloud, std::int32_t i)
+{
+  const auto u = static_cast<std::size_t>(i);
+  return pseudoAzimuth(cloud.x(u), cloud.y(u));
+}
+
+/// Mean |elevation step| (as a tangent) along a direction of an organised cloud.
+float meanElevationStep(const CloudView& cloud, std::size_t step, std::size_t line_length, std::size_t line_step)
+{
+  double sum = 0.0;
+  std::size_t count = 0;
+  const std::size_t lines = cloud.size / line_length;
+  for (std::size_t line = 0; line < lines; ++line) {
+    for (std::size_t n = 0; n + 1 < line_length; n += 7) {  // a sample of the neighbours tells as much as all
+      const std::size_t a = line * line_step + n * step;
+      const std::size_t b = a + step;
+      if (isMeasurable(cloud, a) && isMeasurable(cloud, b)) {
+        sum += std::abs(cloud.z(a) / std::hypot(cloud.x(a), cloud.y(a)) -
+                        cloud.z(b) / std::hypot(cloud.x(b), cloud.y(b)));
+        ++count;
+      }
+    }
+  }
+  return count == 0 ? 0.0F : static_cast<float>(sum / static_cast<double>(count));
+}
+
+}  // namespace
+
+void groupByLine(const CloudView& cloud, const std::vector<std::int32_t>& line_of_point, int line_count,
+                 ScanLines& lines)
+{
+  lines.begin.assign(static_cast<std::size_t>(line_count) + 1, 0);
+  for (const std::int32_t line : line_of_point) {
+    if (line >= 0) {
+      ++lines.begin[static_cast<std::size_t>(line) + 1];
+    }
+  }
+  for (std::size_t m = 1; m < lines.begin.size(); ++m) {
+    lines.begin[m] += lines.begin[m - 1];
+  }
+  lines.index.resize(static_cast<std::size_t>(lines.begin.back()));
+  std::vector<std::int32_t> next(lines.begin.begin(), lines.begin.end() - 1);
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (line_of_point[i] >= 0) {
+      lines.index[static_cast<std::size_t>(next[static_cast<std::size_t>(line_of_point[i])]++)] =
+          static_cast<std::int32_t>(i);
+    }
+  }
+}
+
+void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
+{
+  std::size_t rising = 0;
+  std::size_t falling = 0;
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    for (std::int32_t n = lines.begin[m] + 1; n < lines.begin[m + 1]; ++n) {
+      const float step = pseudoAzimuthStep(pseudoAzimuthOf(cloud, lines.index[static_cast<std::size_t>(n) - 1]),
+                                           pseudoAzimuthOf(cloud, lines.index[static_cast<std::size_t>(n)]));
+      rising += step > 0.0F ? 1U : 0U;
+      falling += step < 0.0F ? 1U : 0U;
+    }
+  }
+  const std::size_t steps = rising + falling;
+  lines.confidence = steps == 0 ? 0.0F : static_cast<float>(std::max(rising, falling)) / static_cast<float>(steps);
+  if (lines.confidence >= kSweepOrderConfidence) {
+    return;
+  }
+  lines.sorted_by_azimuth = true;
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    std::sort(lines.index.begin() + lines.begin[m], lines.index.begin() + lines.begin[m + 1],
+              [&cloud](std::int32_t a, std::int32_t b) {
+                const float azimuth_a = pseudoAzimuthOf(cloud, a);
+                const float azimuth_b = pseudoAzimuthOf(cloud, b);
+                return azimuth_a != azimuth_b ? azimuth_a < azimuth_b : a < b;
+              });
+  }
+}
+
+bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+{
+  if (!cloud.ring.exists()) {
+    return false;
+  }
+  std::vector<std::int32_t> line_of_point(cloud.size, -1);
+  int line_count = 0;
+  std::size_t measurable = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (!isMeasurable(cloud, i)) {
+      continue;
+    }
+    ++measurable;
+    const double ring = cloud.ring.read(cloud.point(i));
+    if (ring >= 0.0 && ring < kMaxScanLines && ring == std::floor(ring)) {
+      line_of_point[i] = static_cast<std::int32_t>(ring);
+      line_count = std::max(line_count, line_of_point[i] + 1);
+    }
+  }
+  groupByLine(cloud, line_of_point, line_count, lines);
+  // A ring field that the driver left at zero, or that holds something else, is no ring field.
+  const auto used = std::count_if(lines.begin.begin(), lines.begin.end() - 1,
+                                  [&](const std::int32_t& first) { return first < *(&first + 1); });
+  if (used < kMinScanLines || lines.index.size() * 2 < measurable) {
+    return false;
+  }
+  ensureSweepOrder(cloud, lines);
+  return true;
+}
+
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+{
+  if (cloud.height < kMinScanLines || cloud.width < kMinScanLines ||
+      static_cast<std::size_t>(cloud.width) * cloud.height != cloud.size) {
+    return false;
+  }
+  // A scan line keeps its elevation; the other direction of the grid does not.
+  lines.transposed = meanElevationStep(cloud, 1, cloud.width, cloud.width) >
+                     meanElevationStep(cloud, cloud.width, cloud.height, 1);
+  const std::uint32_t line_count = lines.transposed ? cloud.width : cloud.height;
+  if (line_count > kMaxScanLines) {
+    return false;
+  }
+  std::vector<std::int32_t> line_of_point(cloud.size, -1);
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (isMeasurable(cloud, i)) {
+      line_of_point[i] = static_cast<std::int32_t>(lines.transposed ? i % cloud.width : i / cloud.width);
+    }
+  }
+  groupByLine(cloud, line_of_point, static_cast<int>(line_count), lines);
+  ensureSweepOrder(cloud, lines);
+  // Depth images are organised too, but their rows do not run around the sensor in one direction unless seen so;
+  // either way neighbours in a row are neighbours on the surface, which is all that is needed.
+  return true;
+}
+
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+{
+  // A line ends where azimuth jumps back by most of a turn (0.6 of it: lines may begin late and end early).
+  constexpr float kJump = 2.4F;
+  for (const bool rear : {false, true}) {
+    lines.index.clear();
+    lines.begin.assign(1, 0);
+    std::size_t rising = 0;
+    std::size_t falling = 0;
+    std::size_t jumps_up = 0;
+    std::size_t jumps_down = 0;
+    float previous = 0.0F;
+    for (std::size_t i = 0; i < cloud.size; ++i) {
+      if (!isMeasurable(cloud, i)) {
+        continue;
+      }
+      const float sign = rear ? -1.0F : 1.0F;  // seen turned by half a turn, a cut at the rear is one at the front
+      const float azimuth = pseudoAzimuth(sign * cloud.x(i), sign * cloud.y(i));
+      if (!lines.index.empty()) {
+        const float step = azimuth - previous;
+        if (std::abs(step) > kJump) {
+          (step > 0.0F ? jumps_up : jumps_down)++;
+          lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
+        } else {
+          rising += step > 0.0F ? 1U : 0U;
+          falling += step < 0.0F ? 1U : 0U;
+        }
+      }
+      previous = azimuth;
+      lines.index.push_back(static_cast<std::int32_t>(i));
+    }
+    lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
+
+    const bool rises = rising >= falling;
+    const std::size_t right_steps = std::max(rising, falling) + (rises ? jumps_down : jumps_up);
+    const std::size_t steps = rising + falling + jumps_up + jumps_down;
+    lines.confidence = steps == 0 ? 0.0F : static_cast<float>(right_steps) / static_cast<float>(steps);
+    constexpr float kFileOrderConfidence = 0.95F;  // other orders of points give about one half
+    const int line_count = static_cast<int>(lines.lines());
+    if (lines.confidence >= kFileOrderConfidence && line_count >= 4 && line_count <= kMaxScanLines) {
+      lines.kitti_order = !rear && rises;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace pcl_floam

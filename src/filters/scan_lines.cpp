@@ -1,0 +1,93 @@
+#include <pcl_floam/filters/scan_lines.h>
+
+#include "filters/scan_line_finders.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_floam {
+
+const char* toString(ScanLineSource source)
+{
+  switch (source) {
+    case ScanLineSource::automatic: return "automatic";
+    case ScanLineSource::ring_field: return "ring field";
+    case ScanLineSource::organized_rows: return "organized rows";
+    case ScanLineSource::file_order: return "file order";
+    case ScanLineSource::elevation_table: return "elevation table";
+    case ScanLineSource::elevation_clusters: return "elevation clusters";
+  }
+  return "unknown";
+}
+
+const char* toString(ScanLineFailure failure)
+{
+  switch (failure) {
+    case ScanLineFailure::none: return "none";
+    case ScanLineFailure::empty_cloud: return "the cloud has no measurable point";
+    case ScanLineFailure::source_not_available: return "the cloud lacks what the chosen source of scan lines needs";
+    case ScanLineFailure::no_line_structure: return "no scan-line structure was found";
+  }
+  return "unknown";
+}
+
+namespace {
+
+using Finder = bool (*)(const CloudView&, const SensorModel&, ScanLines&);
+
+struct NamedFinder {
+  ScanLineSource source;
+  Finder find;
+};
+
+/// In the order of trust: what the driver says, what the cloud's layout says, what geometry says.
+constexpr NamedFinder kFinders[] = {
+    {ScanLineSource::ring_field, linesFromRingField},
+    {ScanLineSource::organized_rows, linesFromOrganizedRows},
+    {ScanLineSource::file_order, linesFromFileOrder},
+    {ScanLineSource::elevation_table, linesFromElevationTable},
+    {ScanLineSource::elevation_clusters, linesFromElevationClusters},
+};
+
+bool hasMeasurablePoint(const CloudView& cloud)
+{
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (isMeasurable(cloud, i)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines)
+{
+  const auto start_over = [&lines] {
+    lines.index.clear();
+    lines.begin.clear();
+    lines.source = ScanLineSource::automatic;
+    lines.failure = ScanLineFailure::none;
+    lines.confidence = 0.0F;
+    lines.sorted_by_azimuth = lines.transposed = lines.kitti_order = false;
+  };
+  start_over();
+  if (!hasMeasurablePoint(cloud)) {
+    lines.failure = ScanLineFailure::empty_cloud;
+    return;
+  }
+  for (const NamedFinder& finder : kFinders) {
+    if (source != ScanLineSource::automatic && source != finder.source) {
+      continue;
+    }
+    if (finder.find(cloud, sensor, lines)) {
+      lines.source = finder.source;
+      return;
+    }
+    start_over();
+  }
+  lines.failure = source == ScanLineSource::automatic ? ScanLineFailure::no_line_structure
+                                                      : ScanLineFailure::source_not_available;
+}
+
+}  // namespace pcl_floam

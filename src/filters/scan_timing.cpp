@@ -1,0 +1,189 @@
+#include <pcl_floam/filters/scan_timing.h>
+
+#include "filters/azimuth.h"
+#include "filters/scan_line_finders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_floam {
+
+const char* toString(ScanTimingSource source)
+{
+  switch (source) {
+    case ScanTimingSource::automatic: return "automatic";
+    case ScanTimingSource::time_field: return "time field";
+    case ScanTimingSource::columns: return "columns";
+    case ScanTimingSource::azimuth: return "azimuth";
+    case ScanTimingSource::none: return "none";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Seconds per unit of a time field whose values span \p span units.
+double timeUnit(double span, FieldView::Type type)
+{
+  // A sweep lasts between 1/100 s and some seconds: of the units that drivers use, only one fits.
+  constexpr double kShortest = 0.005;
+  constexpr double kLongest = 5.0;
+  for (const double unit : {1.0, 1e-3, 1e-6, 1e-9}) {
+    if (span * unit >= kShortest && span * unit < kLongest) {
+      return unit;
+    }
+  }
+  const bool real = type == FieldView::Type::float32 || type == FieldView::Type::float64;
+  return real ? 1.0 : 1e-9;
+}
+
+bool timingFromField(const CloudView& cloud, ScanTiming& timing)
+{
+  if (!cloud.time.exists()) {
+    return false;
+  }
+  double first = std::numeric_limits<double>::infinity();
+  double last = -first;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    const double t = cloud.time.read(cloud.point(i));
+    if (std::isfinite(t) && isMeasurable(cloud, i)) {
+      first = std::min(first, t);
+      last = std::max(last, t);
+    }
+  }
+  if (!(last > first)) {  // empty, or a field that the driver left constant
+    return false;
+  }
+  // Times after the sweep's start begin near zero: then zero is the start, also when the first returns are missing.
+  if (first > 0.0 && first < last - first) {
+    first = 0.0;
+  }
+  timing.source = ScanTimingSource::time_field;
+  timing.seconds_per_unit = timeUnit(last - first, cloud.time.type);
+  timing.start = first * timing.seconds_per_unit;
+  timing.duration = (last - first) * timing.seconds_per_unit;
+  return true;
+}
+
+/// +1 if azimuth rises along the lines (counterclockwise seen from above), -1 if it falls, 0 if neither.
+int lineDirection(const CloudView& cloud, const ScanLines& lines)
+{
+  long balance = 0;
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    for (std::int32_t n = lines.begin[m] + 8; n < lines.begin[m + 1]; n += 8) {
+      const auto a = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n) - 8]);
+      const auto b = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
+      const float cross = cloud.x(a) * cloud.y(b) - cloud.y(a) * cloud.x(b);
+      balance += cross > 0.0F ? 1 : (cross < 0.0F ? -1 : 0);
+    }
+  }
+  return balance > 0 ? 1 : (balance < 0 ? -1 : 0);
+}
+
+/// Azimuth of the first measurable point, in rad.
+double firstAzimuth(const CloudView& cloud)
+{
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (isMeasurable(cloud, i)) {
+      return std::atan2(static_cast<double>(cloud.y(i)), static_cast<double>(cloud.x(i)));
+    }
+  }
+  return 0.0;
+}
+
+bool timingFromColumns(const CloudView& cloud, const ScanLines& lines, ScanTiming& timing)
+{
+  if (lines.source != ScanLineSource::organized_rows || lines.transposed || lines.sorted_by_azimuth ||
+      cloud.width < 2) {
+    return false;
+  }
+  timing.source = ScanTimingSource::columns;
+  return true;
+}
+
+bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotation rotation, ScanTiming& timing)
+{
+  if (!lines.valid()) {
+    return false;
+  }
+  const bool order_shows_rotation = !lines.kitti_order && !lines.sorted_by_azimuth;
+  if (lines.kitti_order) {
+    timing.clockwise = true;
+    timing.start_azimuth = 0.5 * kTwoPi;
+  } else if (order_shows_rotation) {
+    const int direction = lineDirection(cloud, lines);
+    if (direction == 0 && rotation == ScanRotation::automatic) {
+      return false;
+    }
+    timing.clockwise = direction < 0;
+    timing.start_azimuth = firstAzimuth(cloud);
+    timing.firing_order = lines.source != ScanLineSource::file_order;
+  } else if (rotation == ScanRotation::automatic) {
+    return false;  // sorted afterwards: nothing tells where the sweep began or which way it went
+  } else {
+    timing.start_azimuth = 0.5 * kTwoPi;
+  }
+  if (rotation != ScanRotation::automatic) {
+    timing.clockwise = rotation == ScanRotation::clockwise;
+  }
+  timing.source = ScanTimingSource::azimuth;
+  return true;
+}
+
+double azimuthFraction(const ScanTiming& timing, const CloudView& cloud, std::size_t i)
+{
+  const double azimuth = std::atan2(static_cast<double>(cloud.y(i)), static_cast<double>(cloud.x(i)));
+  const double turned = timing.clockwise ? timing.start_azimuth - azimuth : azimuth - timing.start_azimuth;
+  double fraction = turned / kTwoPi;
+  fraction -= std::floor(fraction);
+  if (timing.firing_order) {
+    // Around the seam the same azimuth comes twice; the place in the cloud tells which of the two it is.
+    const double place = static_cast<double>(i) / static_cast<double>(cloud.size);
+    if (fraction > 0.75 && place < 0.25) {
+      return 0.0;
+    }
+    if (fraction < 0.25 && place > 0.75) {
+      return 1.0;
+    }
+  }
+  return fraction;
+}
+
+}  // namespace
+
+float ScanTiming::at(const CloudView& cloud, std::size_t i) const
+{
+  double fraction = 1.0;
+  switch (source) {
+    case ScanTimingSource::time_field:
+      fraction = (cloud.time.read(cloud.point(i)) * seconds_per_unit - start) / duration;
+      break;
+    case ScanTimingSource::columns:
+      fraction = static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1);
+      break;
+    case ScanTimingSource::azimuth: fraction = azimuthFraction(*this, cloud, i); break;
+    case ScanTimingSource::automatic:
+    case ScanTimingSource::none: break;
+  }
+  return std::isfinite(fraction) ? static_cast<float>(std::clamp(fraction, 0.0, 1.0)) : 1.0F;
+}
+
+ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,
+                          ScanRotation rotation)
+{
+  ScanTiming timing;
+  const bool any = source == ScanTimingSource::automatic;
+  if ((any || source == ScanTimingSource::time_field) && timingFromField(cloud, timing)) {
+    return timing;
+  }
+  if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {
+    return timing;
+  }
+  if ((any || source == ScanTimingSource::azimuth) && timingFromAzimuth(cloud, lines, rotation, timing)) {
+    return timing;
+  }
+  return {};
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,37 @@
+#include <pcl_floam/filters/sweep_motion.h>
+
+#include <pcl_floam/filters/motion_compensation_mode.h>
+
+namespace pcl_floam {
+
+const char* toString(CompensationMode mode)
+{
+  switch (mode) {
+    case CompensationMode::none: return "none";
+    case CompensationMode::two_stage: return "two-stage";
+    case CompensationMode::iterative: return "loam";
+  }
+  return "unknown";
+}
+
+void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated)
+{
+  compensated = features;
+  if (motion.isStill()) {
+    return;
+  }
+  for (Feature& feature : compensated) {
+    const Eigen::Vector3d point = motion.at(feature.time) * Eigen::Vector3d(feature.x, feature.y, feature.z);
+    feature.x = static_cast<float>(point.x());
+    feature.y = static_cast<float>(point.y());
+    feature.z = static_cast<float>(point.z());
+  }
+}
+
+void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated)
+{
+  compensate(features.edges, motion, compensated.edges);
+  compensate(features.planes, motion, compensated.planes);
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,29 @@
+/// \file kdtree_search.h
+/// Nearest neighbours by FLANN's KD-tree, the paper's choice.
+#pragma once
+
+#include <pcl_floam/map/neighbor_search.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A KD-tree over a fixed set of points.
+class KdTreeSearch : public NeighborSearch {
+public:
+  /// \param points finite, in the world frame; may be empty
+  explicit KdTreeSearch(const std::vector<Eigen::Vector3d>& points);
+  ~KdTreeSearch() override;
+
+  void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
+  void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
+
+private:
+  struct Index;
+  std::unique_ptr<Index> index_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,145 @@
+#include <pcl_floam/map/keyframe_voxel_map.h>
+
+#include "common/parameter_check.h"
+#include "map/kdtree_search.h"
+#include "map/voxel_layer.h"
+
+namespace pcl_floam {
+
+const char* toString(SearchMethod method)
+{
+  return method == SearchMethod::voxel ? "voxel" : "kdtree";
+}
+
+void validate(const MapParameters& p)
+{
+  const ParameterCheck check("map");
+  check.above("edge_voxel_size", p.edge_voxel_size, 0.0);
+  check.above("plane_voxel_size", p.plane_voxel_size, 0.0);
+  check.above("horizon", p.horizon, 0.0);
+}
+
+struct KeyframeVoxelMap::Impl {
+  explicit Impl(const MapParameters& p) : parameters(p), edges(p.edge_voxel_size), planes(p.plane_voxel_size) {}
+
+  [[nodiscard]] VoxelLayer& layer(FeatureKind kind) { return kind == FeatureKind::edge ? edges : planes; }
+
+  /// The trees are a picture of the layers at one moment: a change makes them new.
+  void rebuildTrees()
+  {
+    if (parameters.search == SearchMethod::kdtree) {
+      edge_tree = std::make_shared<KdTreeSearch>(edges.points());
+      plane_tree = std::make_shared<KdTreeSearch>(planes.points());
+    }
+  }
+
+  void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor)
+  {
+    for (const Feature& feature : features) {
+      layer_of_kind.insert(world_T_sensor * Eigen::Vector3d(feature.x, feature.y, feature.z));
+    }
+  }
+
+  /// Cropping touches every block, so it is done once the sensor has gone a tenth of the horizon.
+  void cropWhenDue(const Eigen::Vector3d& center)
+  {
+    if ((center - last_crop).norm() > 0.1 * parameters.horizon) {
+      edges.crop(center, parameters.horizon);
+      planes.crop(center, parameters.horizon);
+      last_crop = center;
+    }
+  }
+
+  MapParameters parameters;
+  VoxelLayer edges;
+  VoxelLayer planes;
+  Eigen::Vector3d last_crop = Eigen::Vector3d::Zero();
+  std::shared_ptr<const KdTreeSearch> edge_tree;  // shared: a copy of the map may look at the same picture
+  std::shared_ptr<const KdTreeSearch> plane_tree;
+};
+
+KeyframeVoxelMap::KeyframeVoxelMap(const MapParameters& parameters)
+{
+  validate(parameters);
+  impl_ = std::make_unique<Impl>(parameters);
+  impl_->rebuildTrees();
+}
+
+KeyframeVoxelMap::KeyframeVoxelMap(const KeyframeVoxelMap& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
+KeyframeVoxelMap::KeyframeVoxelMap(KeyframeVoxelMap&& other) noexcept = default;
+KeyframeVoxelMap& KeyframeVoxelMap::operator=(KeyframeVoxelMap&& other) noexcept = default;
+KeyframeVoxelMap::~KeyframeVoxelMap() = default;
+
+KeyframeVoxelMap& KeyframeVoxelMap::operator=(const KeyframeVoxelMap& other)
+{
+  *impl_ = *other.impl_;
+  return *this;
+}
+
+void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sensor)
+{
+  impl_->insert(impl_->edges, features.edges, world_T_sensor);
+  impl_->insert(impl_->planes, features.planes, world_T_sensor);
+  impl_->cropWhenDue(world_T_sensor.translation);
+  impl_->rebuildTrees();
+}
+
+void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points)
+{
+  for (const Eigen::Vector3d& point : points) {
+    if (point.allFinite()) {
+      impl_->layer(kind).insert(point);
+    }
+  }
+  impl_->rebuildTrees();
+}
+
+void KeyframeVoxelMap::crop(const Eigen::Vector3d& center)
+{
+  impl_->edges.crop(center, impl_->parameters.horizon);
+  impl_->planes.crop(center, impl_->parameters.horizon);
+  impl_->last_crop = center;
+  impl_->rebuildTrees();
+}
+
+void KeyframeVoxelMap::clear()
+{
+  impl_->edges.clear();
+  impl_->planes.clear();
+  impl_->rebuildTrees();
+}
+
+std::size_t KeyframeVoxelMap::size(FeatureKind kind) const
+{
+  return impl_->layer(kind).size();
+}
+
+const NeighborSearch& KeyframeVoxelMap::search(FeatureKind kind) const
+{
+  if (impl_->parameters.search == SearchMethod::kdtree) {
+    return kind == FeatureKind::edge ? *impl_->edge_tree : *impl_->plane_tree;
+  }
+  return impl_->layer(kind);
+}
+
+std::vector<Eigen::Vector3d> KeyframeVoxelMap::points(FeatureKind kind) const
+{
+  return impl_->layer(kind).points();
+}
+
+pcl::PointCloud<pcl::PointXYZ>::Ptr KeyframeVoxelMap::cloud(FeatureKind kind) const
+{
+  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const Eigen::Vector3d& point : points(kind)) {
+    cloud->push_back(pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()),
+                                   static_cast<float>(point.z())));
+  }
+  return cloud;
+}
+
+const MapParameters& KeyframeVoxelMap::parameters() const
+{
+  return impl_->parameters;
+}
+
+}  // namespace pcl_floam
