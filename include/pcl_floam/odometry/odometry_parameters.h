@@ -16,6 +16,8 @@ namespace pcl_floam {
 /// The instant of the sweep that a pose describes.
 enum class PoseInstant : std::uint8_t { start, middle, end };
 
+[[nodiscard]] const char* toString(PoseInstant instant);
+
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
   SensorModel sensor;  ///< default "auto"
@@ -36,5 +38,8 @@ struct OdometryParameters {
   MapParameters map;
   int threads = 1;  ///< 1 or more; the result does not depend on it
 };
+
+/// \throws std::invalid_argument naming the first setting that is out of its range.
+void validate(const OdometryParameters& parameters);
 
 }  // namespace pcl_floam

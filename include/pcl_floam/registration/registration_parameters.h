@@ -47,6 +47,9 @@ struct RegistrationParameters {
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.05;
   int min_correspondences = 20;       ///< fewer give no pose; >= 6
+  /// Directions with less information per correspondence than this are weak: the guess is kept along them.
+  /// 1/6 is the average direction; [0, 0.1], 0 follows every direction.
+  double weak_threshold = 1e-4;
 };
 
 /// \throws std::invalid_argument naming the first setting that is out of its range.

@@ -1,0 +1,42 @@
+/// \file feature_registration.h
+/// The pose estimation from edge and plane features, for every point type: the core of \ref EdgePlaneRegistration.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/registration_report.h>
+
+#include <functional>
+
+namespace pcl_floam {
+
+/// What is registered against: the searches of an edge layer and of a plane layer. Neither may be null.
+struct FeatureTarget {
+  const NeighborSearch* edges = nullptr;
+  const NeighborSearch* planes = nullptr;
+};
+
+/// Settings of one registration that change from scan to scan.
+struct RegistrationRun {
+  SE3 guess;                    ///< target_T_source
+  /// m; how far off the guess may be: neighbours are searched this far at first, and less with each iteration
+  /// down to `max_neighbor_distance`. 0 uses the latter throughout.
+  double guess_uncertainty = 0.0;
+  int threads = 1;
+  /// LOAM's iterative compensation: called before each iteration with the present pose, to undistort the source
+  /// anew. Must keep the features' number and order. Empty: the source stays as it is.
+  std::function<void(const SE3& target_T_source, FeatureSet& source)> recompensate;
+};
+
+/// Estimates the pose of a scan's features in a map by minimising the weighted point-to-line and point-to-plane
+/// distances (Eq. 10), with fresh correspondences in every iteration, until it converges.
+///
+/// Never throws for data; the report tells what came of it. Bit-identical for every number of threads.
+/// \param source     undistorted features in the sensor's frame; changed only by `recompensate`
+/// \param parameters must be valid (\ref validate)
+[[nodiscard]] RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& target,
+                                                  const RegistrationRun& run, const RegistrationParameters& parameters);
+
+}  // namespace pcl_floam

@@ -1,0 +1,78 @@
+#include "odometry/constant_velocity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr std::size_t kRememberedPeriods = 9;
+constexpr double kMaxExtrapolation = 10.0;  // periods
+
+}  // namespace
+
+double ScanClock::period() const
+{
+  if (given_period_ > 0.0 || recent_.empty()) {
+    return given_period_;
+  }
+  std::vector<double> sorted = recent_;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  return *middle;
+}
+
+double ScanClock::tick(std::optional<double> stamp)
+{
+  if (!stamp || !std::isfinite(*stamp)) {
+    return 1.0;
+  }
+  if (!last_stamp_) {
+    last_stamp_ = stamp;
+    return 1.0;
+  }
+  const double elapsed = *stamp - *last_stamp_;
+  last_stamp_ = stamp;
+  if (elapsed <= 0.0) {
+    return 0.0;
+  }
+  if (recent_.size() == kRememberedPeriods) {
+    recent_.erase(recent_.begin());
+  }
+  recent_.push_back(elapsed);
+  return elapsed / period();
+}
+
+SE3 ConstantVelocity::motion(double periods) const
+{
+  return exp(std::min(periods, kMaxExtrapolation) * twist_);
+}
+
+void ConstantVelocity::observe(const SE3& last_T_now, double periods)
+{
+  if (periods > 0.0) {
+    set(log(last_T_now) / periods);
+  }
+}
+
+void ConstantVelocity::set(const Vector6& twist)
+{
+  twist_ = twist;
+  known_ = true;
+}
+
+void PredictionError::observe(const SE3& predicted_T_estimated, double typical_range)
+{
+  const double displacement = predicted_T_estimated.translation.norm() +
+                              rotationAngle(predicted_T_estimated.rotation) * typical_range;
+  constexpr double kForgetting = 0.8;  // about five scans of memory
+  squared_ = kForgetting * squared_ + (1.0 - kForgetting) * displacement * displacement;
+}
+
+double PredictionError::bound(double periods) const
+{
+  return 3.0 * std::sqrt(squared_) * std::max(1.0, periods);
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,65 @@
+/// \file constant_velocity.h
+/// Motion prediction (Eq. 2), with gaps and uneven periods.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+#include <optional>
+#include <vector>
+
+namespace pcl_floam {
+
+/// How far apart scans are, in periods of the sensor: 1 from one scan to the next, 2 when one is missing.
+class ScanClock {
+public:
+  /// \param period s; 0 to take it from the stamps
+  explicit ScanClock(double period = 0.0) : given_period_(period) {}
+
+  /// Periods since the last scan. Without stamps it is 1; 0 for a stamp that does not advance.
+  double tick(std::optional<double> stamp);
+
+  /// Seconds from sweep to sweep; 0 while unknown.
+  [[nodiscard]] double period() const;
+
+private:
+  double given_period_;
+  std::optional<double> last_stamp_;
+  std::vector<double> recent_;  ///< the last differences of stamps
+};
+
+/// The constant-velocity model: the next motion is the last one (Eq. 2).
+class ConstantVelocity {
+public:
+  /// Whether two poses have been seen.
+  [[nodiscard]] bool isKnown() const { return known_; }
+
+  /// xi of Eq. 2, motion within one period.
+  [[nodiscard]] const Vector6& twist() const { return twist_; }
+
+  /// Motion over a number of periods; extrapolation ends after ten.
+  [[nodiscard]] SE3 motion(double periods) const;
+
+  /// Learns from the motion between two tracked scans \p periods apart.
+  void observe(const SE3& last_T_now, double periods);
+
+  void set(const Vector6& twist);
+
+private:
+  Vector6 twist_ = Vector6::Zero();
+  bool known_ = false;
+};
+
+/// How far predictions have been off lately, in m of displacement of a point at a typical distance.
+class PredictionError {
+public:
+  void observe(const SE3& predicted_T_estimated, double typical_range);
+
+  /// A bound for the next prediction: three times the recent root mean square, growing over gaps.
+  [[nodiscard]] double bound(double periods) const;
+
+private:
+  static constexpr double kUnknown = 1.0;  // m, before anything was observed
+  double squared_ = kUnknown;
+};
+
+}  // namespace pcl_floam

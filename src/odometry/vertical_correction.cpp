@@ -1,0 +1,37 @@
+#include "odometry/vertical_correction.h"
+
+#include <cmath>
+
+namespace pcl_floam {
+
+namespace {
+
+void correct(double sine, double cosine, std::vector<Feature>& features)
+{
+  for (Feature& f : features) {
+    const double horizontal = std::hypot(f.x, f.y);
+    if (horizontal > 0.0) {
+      // In the vertical plane through the point, (horizontal, z) turns by the angle.
+      const double scale = cosine - sine * f.z / horizontal;
+      f.z = static_cast<float>(cosine * f.z + sine * horizontal);
+      f.x = static_cast<float>(scale * f.x);
+      f.y = static_cast<float>(scale * f.y);
+    }
+  }
+}
+
+}  // namespace
+
+void correctVerticalAngle(double degrees, FeatureSet& features)
+{
+  if (degrees == 0.0) {
+    return;
+  }
+  constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
+  const double sine = std::sin(degrees * kRadPerDegree);
+  const double cosine = std::cos(degrees * kRadPerDegree);
+  correct(sine, cosine, features.edges);
+  correct(sine, cosine, features.planes);
+}
+
+}  // namespace pcl_floam

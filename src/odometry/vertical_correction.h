@@ -1,0 +1,12 @@
+/// \file vertical_correction.h
+/// Correction of a sensor's vertical calibration.
+#pragma once
+
+#include <pcl_floam/filters/features.h>
+
+namespace pcl_floam {
+
+/// Turns every feature by \p degrees about p x z, so that it rises (KITTI's HDL-64 needs about 0.205).
+void correctVerticalAngle(double degrees, FeatureSet& features);
+
+}  // namespace pcl_floam

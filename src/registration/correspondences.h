@@ -1,0 +1,47 @@
+/// \file correspondences.h
+/// Features of the scan linked to lines and planes of the map.
+#pragma once
+
+#include "registration/factors.h"
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/registration_parameters.h>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// A source point and the factor that holds it.
+template <typename Factor>
+struct Correspondence {
+  Eigen::Vector3d point;  ///< in the sensor's frame
+  Factor factor;          ///< in the target's axes, relative to the local origin
+  double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
+};
+
+/// The correspondences of one iteration.
+struct Correspondences {
+  std::vector<Correspondence<EdgeFactor>> edges;
+  std::vector<Correspondence<PlaneFactor>> planes;
+};
+
+/// What a pose estimation works with, fixed over its iterations.
+struct RegistrationProblem {
+  const FeatureTarget& target;
+  const RegistrationParameters& parameters;
+  /// In the target frame, near the sensor. Everything is solved relative to it: the perturbation then turns about
+  /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
+  Eigen::Vector3d origin;
+  int threads = 1;
+};
+
+/// Finds the line of each edge feature and the plane of each plane feature.
+/// \param local_T_sensor pose relative to the problem's origin
+/// \param search_radius  m: the farthest neighbour used must be nearer
+void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& source,
+                         const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
+                         const SE3& local_T_sensor, double search_radius, Correspondences& correspondences);
+
+}  // namespace pcl_floam

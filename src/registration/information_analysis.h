@@ -1,0 +1,37 @@
+/// \file information_analysis.h
+/// Which directions of motion the correspondences constrain, and the step and covariance that follow.
+#pragma once
+
+#include "registration/normal_equations.h"
+
+#include <pcl_floam/registration/registration_report.h>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// Eigen-analysis of H in metres: rotations are scaled by the root mean square distance of the points, so that an
+/// eigenvalue tells how well a displacement of the typical point is seen, whatever its direction.
+class InformationAnalysis {
+public:
+  /// \param weak_threshold eigenvalues per correspondence below this are weak
+  InformationAnalysis(const NormalEquations& equations, double weak_threshold);
+
+  /// The Gauss-Newton step -H^-1 b; zero along weak directions, where following the noise would only do harm
+  /// (solution remapping after Zhang and Singh, 2016).
+  [[nodiscard]] Vector6 step() const;
+
+  /// Covariance of the perturbation; weak directions get the variance of an eigenvalue near zero.
+  [[nodiscard]] Matrix6 covariance() const;
+
+  [[nodiscard]] std::vector<WeakDirection> weakDirections() const;
+
+private:
+  const NormalEquations& equations_;
+  double weak_threshold_;
+  Vector6 scale_;          ///< from scaled unknowns (all in m) to (m, rad)
+  Vector6 eigenvalues_;    ///< of the scaled H over the sum of the weights
+  Matrix6 eigenvectors_;   ///< columns, of the scaled H
+};
+
+}  // namespace pcl_floam

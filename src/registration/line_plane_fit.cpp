@@ -1,0 +1,53 @@
+#include "registration/line_plane_fit.h"
+
+#include <Eigen/Eigenvalues>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Mean and eigen-decomposition of the covariance of a few points; eigenvalues rise.
+struct Distribution {
+  explicit Distribution(const Neighbors& neighbors)
+  {
+    const double count = neighbors.count;
+    for (int i = 0; i < neighbors.count; ++i) {
+      center += neighbors[i].offset.cast<double>();
+    }
+    center /= count;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < neighbors.count; ++i) {
+      const Eigen::Vector3d difference = neighbors[i].offset.cast<double>() - center;
+      covariance += difference * difference.transpose();
+    }
+    solver.computeDirect(covariance / count);
+  }
+
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+};
+
+}  // namespace
+
+std::optional<LineFit> fitLine(const Neighbors& neighbors, const RegistrationParameters& parameters)
+{
+  const Distribution points(neighbors);
+  const Eigen::Vector3d& eigenvalues = points.solver.eigenvalues();
+  if (!(eigenvalues[2] > parameters.line_ratio * eigenvalues[1]) || !(eigenvalues[2] > 0.0)) {
+    return std::nullopt;
+  }
+  return LineFit{points.center, points.solver.eigenvectors().col(2)};
+}
+
+std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationParameters& parameters)
+{
+  const Distribution points(neighbors);
+  const Eigen::Vector3d& eigenvalues = points.solver.eigenvalues();
+  if (!(eigenvalues[1] > parameters.plane_ratio * eigenvalues[0]) ||
+      !(eigenvalues[1] > parameters.plane_spread * eigenvalues[2])) {
+    return std::nullopt;
+  }
+  return PlaneFit{points.center, points.solver.eigenvectors().col(0)};
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,44 @@
+/// \file normal_equations.h
+/// H and b of all weighted residuals, in one pass (Eq. 10 to 14).
+#pragma once
+
+#include "registration/correspondences.h"
+
+#include <pcl_floam/common/se3.h>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// Scale of the robust kernel for each kind of residual, m.
+struct KernelScales {
+  double edge = 0.0;
+  double plane = 0.0;
+};
+
+/// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
+/// parameters' `kernel_scale`.
+[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const SE3& local_T_sensor,
+                                             const Correspondences& correspondences);
+
+/// Sums over all correspondences.
+struct NormalEquations {
+  Matrix6 information = Matrix6::Zero();  ///< H = sum w J^T J
+  Vector6 gradient = Vector6::Zero();     ///< b = sum w J^T r
+  double cost = 0.0;                      ///< half the sum of W rho(r^2), m^2
+  double weighted_squares = 0.0;          ///< sum w r^2, m^2
+  double weight = 0.0;                    ///< sum w
+  double squared_extent = 0.0;            ///< sum w |q|^2: spread of the points about the local origin, m^2
+  int edges = 0;
+  int planes = 0;
+  int edge_inliers = 0;
+  int plane_inliers = 0;
+
+  NormalEquations& operator+=(const NormalEquations& other);
+};
+
+/// \return the sums, bit-identical for every number of threads: fixed chunks, added in order
+[[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem, const SE3& local_T_sensor,
+                                                   const Correspondences& correspondences, const KernelScales& scales);
+
+}  // namespace pcl_floam
