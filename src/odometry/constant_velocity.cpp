@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kRememberedPeriods = 9;
 constexpr double kMaxExtrapolation = 10.0;  // periods
+constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface is as likely as not another one
 
 }  // namespace
 
@@ -72,7 +73,7 @@ void PredictionError::observe(const SE3& predicted_T_estimated, double typical_r
 
 double PredictionError::bound(double periods) const
 {
-  return 3.0 * std::sqrt(squared_) * std::max(1.0, periods);
+  return std::min(kFarthest, 3.0 * std::sqrt(squared_) * std::max(1.0, periods));
 }
 
 }  // namespace pcl_floam

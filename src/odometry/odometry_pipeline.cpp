@@ -184,10 +184,13 @@ struct OdometryPipeline::Impl {
     run.guess = guess;
     run.guess_uncertainty = guess_uncertainty;
     run.threads = parameters.threads;
-    if (parameters.compensation == CompensationMode::iterative) {
+    // Not before the first motion is known: the map is then distorted as the scan is, and must stay so.
+    if (parameters.compensation == CompensationMode::iterative && velocity.isKnown()) {
       run.recompensate = [this](const SE3& world_T_sensor, FeatureSet& source) {
         compensate(measured, twistTo(world_T_sensor), source);
       };
+      const bool held = timing.valid() && periods_since_tracked > 0.0;
+      run.response_at_start = held ? std::max(0.0, 1.0 - sweep_fraction / periods_since_tracked) : 1.0;
     }
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     return registerFeatures(undistorted, target, run, parameters.registration);

@@ -41,7 +41,7 @@ std::unique_ptr<ceres::LossFunction> makeLoss(RobustKernel kernel, double scale)
 /// d exp(phi)/d phi on the left: exp(phi + d) = exp(J d) exp(phi) to first order.
 Eigen::Matrix3d rotationJacobian(const Eigen::Vector3d& phi)
 {
-  // Central differences of exp would lose digits; this series is exact for the small angles of one step.
+  // The series sum of [phi]x^n / (n + 1)!, exact to double precision for the small angles of one step.
   const Eigen::Matrix3d x = skew(phi);
   Eigen::Matrix3d term = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d sum = term;
@@ -56,17 +56,20 @@ Eigen::Matrix3d rotationJacobian(const Eigen::Vector3d& phi)
 template <typename Factor>
 class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6> {
 public:
-  PerturbationCost(const Factor& factor, Eigen::Vector3d point) : factor_(factor), point_(std::move(point)) {}
+  PerturbationCost(const Factor& factor, Eigen::Vector3d point, double response)
+      : factor_(factor), point_(std::move(point)), response_(response)
+  {
+  }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
   {
     const Eigen::Map<const Eigen::Vector3d> translation(parameters[0]);
-    const Eigen::Vector3d phi = Eigen::Map<const Eigen::Vector3d>(parameters[0] + 3);
+    const Eigen::Vector3d phi = response_ * Eigen::Map<const Eigen::Vector3d>(parameters[0] + 3);
     const Eigen::Vector3d rotated = expSO3(phi) * point_;
     Eigen::Map<Eigen::Matrix<double, Factor::kResiduals, 1>> residual(residuals);
-    residual = factor_.residual(rotated + translation);
+    residual = factor_.residual(rotated + response_ * translation);
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Matrix<double, 3, 6> motion = RigidMotion::derivative(rotated);
+      Eigen::Matrix<double, 3, 6> motion = RigidMotion::derivative(rotated, response_);
       motion.rightCols<3>() = (motion.rightCols<3>() * rotationJacobian(phi)).eval();
       const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian = factor_.derivative() * motion;
       for (int row = 0; row < Factor::kResiduals; ++row) {
@@ -81,6 +84,7 @@ public:
 private:
   Factor factor_;
   Eigen::Vector3d point_;  ///< in the target's axes, relative to the local origin, at delta = 0
+  double response_;        ///< how much of delta the point follows
 };
 
 template <typename Factor>
@@ -90,7 +94,7 @@ void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, co
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
       ceres_problem.AddResidualBlock(
-          new PerturbationCost<Factor>(c.factor, local_T_sensor * c.point),
+          new PerturbationCost<Factor>(c.factor, local_T_sensor * c.point, c.response),
           new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP), delta);
     }
   }

@@ -19,6 +19,7 @@ struct Correspondence {
   Eigen::Vector3d point;  ///< in the sensor's frame
   Factor factor;          ///< in the target's axes, relative to the local origin
   double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
+  double response = 1.0;  ///< how much of the pose's motion the point follows (motion_model.h)
 };
 
 /// The correspondences of one iteration.
@@ -35,6 +36,7 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
+  double response_at_start = 1.0;  ///< see RegistrationRun
 };
 
 /// Finds the line of each edge feature and the plane of each plane feature.
