@@ -32,7 +32,8 @@ enum class ScanFormat { pcd, kitti_bin };
 
 /// The scans of a folder, in natural order of their names (scan2 before scan10).
 ///
-/// Beside the scans, or in the folder above them, a `times.txt` may give one time in seconds per scan.
+/// Beside the scans, or in the folder above them, a `times.txt` may give one time in seconds per scan. For a folder
+/// without scans its subfolder `velodyne` or `velodyne_points/data` is taken: a sequence of KITTI's.
 class ScanSource {
 public:
   /// Lists the folder. Reads no scan yet.
@@ -40,6 +41,8 @@ public:
   ///         `times.txt` has a line that is no number or does not fit the number of scans.
   explicit ScanSource(const std::filesystem::path& folder);
 
+  /// The folder that holds the scans.
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
   [[nodiscard]] std::size_t size() const { return files_.size(); }
   [[nodiscard]] ScanFormat format() const { return format_; }
   [[nodiscard]] const std::filesystem::path& path(std::size_t i) const { return files_.at(i); }
@@ -52,13 +55,15 @@ public:
   void read(std::size_t i, pcl::PCLPointCloud2& cloud) const;
 
 private:
+  std::filesystem::path folder_;
   std::vector<std::filesystem::path> files_;
   std::vector<double> stamps_;
   ScanFormat format_ = ScanFormat::pcd;
 };
 
-/// Reads one PCD file (ascii, binary, binary_compressed).
-/// \throws FileError as ScanSource::read.
+/// Reads one PCD file (ascii, binary, binary_compressed) with all its fields but 64-bit integers, for which PCL has no
+/// name before 1.14; their bytes stay in the points. What follows the declared number of points is ignored.
+/// \throws FileError as ScanSource::read, or if x, y, z are not float32.
 void readPcd(const std::filesystem::path& file, pcl::PCLPointCloud2& cloud);
 
 /// Reads one KITTI file: float32 x, y, z, intensity per point.
