@@ -16,7 +16,9 @@ enum Unfit : std::uint8_t {
   kFit = 0,
   kOutOfRange = 1,
   kOccluded = 2,  // beside a nearer surface: its neighbourhood changes with the viewpoint
-  kGrazing = 4    // on a surface seen almost edge on
+  kGrazing = 4,   // on a surface seen almost edge on
+  kNotAsked = 8,  // the caller wants no feature there
+  kTaken = 16     // part of an edge's neighbourhood
 };
 
 /// A depth step hides surface when it is larger than this part of the range.
@@ -85,8 +87,15 @@ void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std:
 class LineSelector {
 public:
   LineSelector(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-               const FeatureParameters& parameters, LineScratch& scratch, FeatureSet& features)
-      : cloud_(cloud), lines_(lines), timing_(timing), parameters_(parameters), line_(scratch), features_(features)
+               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable,
+               LineScratch& scratch, FeatureSet& features)
+      : cloud_(cloud),
+        lines_(lines),
+        timing_(timing),
+        parameters_(parameters),
+        selectable_(selectable),
+        line_(scratch),
+        features_(features)
   {
   }
 
@@ -99,6 +108,7 @@ public:
     first_index_ = static_cast<std::size_t>(lines_.begin[m]);
     computeSmoothness(line_.points, parameters_.neighbors_each_side, parameters_.smoothness, line_.sigma);
     markUnfit(line_.points, parameters_, line_.unfit);
+    markNotAsked();
 
     const int begin = parameters_.neighbors_each_side;
     const int length = line_.points.size() - 2 * begin;
@@ -111,6 +121,15 @@ public:
   }
 
 private:
+  void markNotAsked()
+  {
+    for (std::size_t n = 0; !selectable_.empty() && n < line_.unfit.size(); ++n) {
+      if (selectable_[static_cast<std::size_t>(lines_.index[first_index_ + n])] == 0) {
+        line_.unfit[n] |= kNotAsked;
+      }
+    }
+  }
+
   /// The points of highest smoothness, at least a neighbourhood apart.
   void selectEdges(int first, int last)
   {
@@ -186,12 +205,11 @@ private:
 
   [[nodiscard]] float sigma(int n) const { return line_.sigma[static_cast<std::size_t>(n)]; }
 
-  static constexpr std::uint8_t kTaken = 128;  // part of an edge's neighbourhood
-
   const CloudView& cloud_;
   const ScanLines& lines_;
   const ScanTiming& timing_;
   const FeatureParameters& parameters_;
+  const std::vector<std::uint8_t>& selectable_;
   LineScratch& line_;
   FeatureSet& features_;
   std::size_t first_index_ = 0;
@@ -219,11 +237,12 @@ void validate(const FeatureParameters& p)
 }
 
 void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-                     const FeatureParameters& parameters, FeatureSet& features)
+                     const FeatureParameters& parameters, FeatureSet& features,
+                     const std::vector<std::uint8_t>& selectable)
 {
   features.clear();
   LineScratch scratch;
-  LineSelector selector(cloud, lines, timing, parameters, scratch, features);
+  LineSelector selector(cloud, lines, timing, parameters, selectable, scratch, features);
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     selector.select(m);
   }

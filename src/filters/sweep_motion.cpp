@@ -14,6 +14,21 @@ const char* toString(CompensationMode mode)
   return "unknown";
 }
 
+const char* toString(PoseInstant instant)
+{
+  switch (instant) {
+    case PoseInstant::start: return "start";
+    case PoseInstant::middle: return "middle";
+    case PoseInstant::end: return "end";
+  }
+  return "unknown";
+}
+
+double fractionOf(PoseInstant instant)
+{
+  return instant == PoseInstant::start ? 0.0 : (instant == PoseInstant::middle ? 0.5 : 1.0);
+}
+
 void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated)
 {
   compensated = features;

@@ -9,8 +9,8 @@ namespace pcl_floam {
 using Tree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
 struct KdTreeSearch::Index {
-  Eigen::Vector3d origin;         ///< of the single-precision coordinates: far from the world's own, near the points
-  std::vector<float> coordinates;  ///< x y z of each point relative to the origin
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the single-precision coordinates: far from the world's own, near the points
+  std::vector<float> coordinates;                    ///< x y z of each point relative to the origin
   std::unique_ptr<Tree> tree;
 };
 
@@ -22,17 +22,22 @@ const flann::SearchParams kExact(flann::FLANN_CHECKS_UNLIMITED, 0.0F, true);
 
 KdTreeSearch::KdTreeSearch(const std::vector<Eigen::Vector3d>& points) : index_(std::make_unique<Index>())
 {
-  index_->origin = points.empty() ? Eigen::Vector3d::Zero() : points.front();
+  const auto first = std::find_if(points.begin(), points.end(), [](const auto& point) { return point.allFinite(); });
+  if (first == points.end()) {
+    return;
+  }
+  index_->origin = *first;
   index_->coordinates.reserve(3 * points.size());
   for (const Eigen::Vector3d& point : points) {
     const Eigen::Vector3f relative = (point - index_->origin).cast<float>();
-    index_->coordinates.insert(index_->coordinates.end(), relative.data(), relative.data() + 3);
+    if (relative.allFinite()) {
+      index_->coordinates.insert(index_->coordinates.end(), relative.data(), relative.data() + 3);
+    }
   }
-  if (!points.empty()) {
-    index_->tree = std::make_unique<Tree>(flann::Matrix<float>(index_->coordinates.data(), points.size(), 3),
-                                          flann::KDTreeSingleIndexParams(15));
-    index_->tree->buildIndex();
-  }
+  index_->tree = std::make_unique<Tree>(
+      flann::Matrix<float>(index_->coordinates.data(), index_->coordinates.size() / 3, 3),
+      flann::KDTreeSingleIndexParams(15));
+  index_->tree->buildIndex();
 }
 
 KdTreeSearch::~KdTreeSearch() = default;
@@ -74,6 +79,11 @@ void KdTreeSearch::within(const Eigen::Vector3d& query, double radius, std::vect
     const Eigen::Vector3f point = Eigen::Map<const Eigen::Vector3f>(&index_->coordinates[3 * indices[0][i]]);
     neighbors.push_back({Eigen::Vector3f(point - relative), distances[0][i]});
   }
+}
+
+std::unique_ptr<NeighborSearch> makeKdTreeSearch(const std::vector<Eigen::Vector3d>& points)
+{
+  return std::make_unique<KdTreeSearch>(points);
 }
 
 }  // namespace pcl_floam

@@ -24,16 +24,6 @@ const char* toString(TrackingState state)
   return "unknown";
 }
 
-const char* toString(PoseInstant instant)
-{
-  switch (instant) {
-    case PoseInstant::start: return "start";
-    case PoseInstant::middle: return "middle";
-    case PoseInstant::end: return "end";
-  }
-  return "unknown";
-}
-
 void validate(const OdometryParameters& p)
 {
   const ParameterCheck check("odometry");
@@ -49,12 +39,7 @@ void validate(const OdometryParameters& p)
 
 namespace {
 
-/// Fraction of the sweep at which an instant lies.
-double fractionOf(PoseInstant instant)
-{
-  return instant == PoseInstant::start ? 0.0 : (instant == PoseInstant::middle ? 0.5 : 1.0);
-}
-
+const double kReference = getenv("REF") ? atof(getenv("REF")) : 0.5;
 /// Root mean square distance of the features: what a rotation error is multiplied with.
 double typicalRange(const FeatureSet& features)
 {
@@ -162,7 +147,7 @@ struct OdometryPipeline::Impl {
   {
     const bool moving = parameters.compensation != CompensationMode::none && timing.valid();
     const Vector6 twist = moving ? Vector6(sweep_fraction * twist_per_period) : Vector6(Vector6::Zero());
-    pcl_floam::compensate(features, SweepMotion(twist), result);
+    pcl_floam::compensate(features, SweepMotion(twist, kReference), result);
   }
 
   // Pose Estimation (Eq. 5 to 14)
@@ -190,7 +175,8 @@ struct OdometryPipeline::Impl {
         compensate(measured, twistTo(world_T_sensor), source);
       };
       const bool held = timing.valid() && periods_since_tracked > 0.0;
-      run.response_at_start = held ? std::max(0.0, 1.0 - sweep_fraction / periods_since_tracked) : 1.0;
+      run.reference = kReference;
+      run.response_slope = held ? sweep_fraction / periods_since_tracked : 0.0;
     }
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     return registerFeatures(undistorted, target, run, parameters.registration);
@@ -240,17 +226,17 @@ struct OdometryPipeline::Impl {
     map.clear();
     FeatureSet compensated;
     compensate(first, twist, compensated);
-    world_T_tracked = initial_pose * instantToEnd(twist);
+    world_T_tracked = initial_pose * instantToReference(twist);
     world_T_keyframe = world_T_tracked;
     map.insert(compensated, world_T_tracked);
   }
 
-  /// Motion from the instant of the parameters to the sweep's end.
-  [[nodiscard]] SE3 instantToEnd(const Vector6& twist) const
+  /// Motion from the instant of the parameters to the reference instant.
+  [[nodiscard]] SE3 instantToReference(const Vector6& twist) const
   {
     // Without compensation a scan has no instants: its one pose is that of the scan as it stands.
     const bool instants = parameters.compensation != CompensationMode::none;
-    return instants ? exp((1.0 - fractionOf(parameters.pose_instant)) * sweep_fraction * twist) : SE3();
+    return instants ? exp((kReference - fractionOf(parameters.pose_instant)) * sweep_fraction * twist) : SE3();
   }
 
   // Mapping Building & Distortion Compensation Update (Eq. 12)
@@ -299,7 +285,7 @@ struct OdometryPipeline::Impl {
   {
     report.state = state;
     report.world_T_sensor =
-        started ? world_T_last * instantToEnd(velocity.twist()).inverse() : initial_pose;
+        started ? world_T_last * instantToReference(velocity.twist()).inverse() : initial_pose;
     report.milliseconds.total = watch.total();
     return report;
   }

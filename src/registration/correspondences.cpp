@@ -39,7 +39,7 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
     if (const auto geometry = fit(neighbors, problem.parameters)) {
       correspondence.factor = makeFactor(*geometry, local);
       correspondence.weight = weights[static_cast<std::size_t>(i)];
-      correspondence.response = problem.response_at_start + (1.0 - problem.response_at_start) * feature.time;
+      correspondence.response = 1.0 + problem.response_slope * (feature.time - problem.reference);
     }
   }
 }

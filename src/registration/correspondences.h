@@ -36,7 +36,8 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
-  double response_at_start = 1.0;  ///< see RegistrationRun
+  double response_slope = 0.0;  ///< see RegistrationRun
+  double reference = 1.0;
 };
 
 /// Finds the line of each edge feature and the plane of each plane feature.

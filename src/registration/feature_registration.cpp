@@ -20,7 +20,7 @@ public:
                  const RegistrationParameters& parameters)
       : source_(source),
         run_(run),
-        problem_{target, parameters, run.guess.translation, run.threads, run.response_at_start},
+        problem_{target, parameters, run.guess.translation, run.threads, run.response_slope, run.reference},
         local_T_sensor_(run.guess.rotation, Eigen::Vector3d::Zero()),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
         edge_weights_(smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights,

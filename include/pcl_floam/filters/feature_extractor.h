@@ -8,6 +8,9 @@
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
 
+#include <cstdint>
+#include <vector>
+
 namespace pcl_floam {
 
 /// Extracts the edge set E_k and the plane set S_k of a scan (the paper's "Sensor Model and Feature Extraction").
@@ -21,7 +24,10 @@ namespace pcl_floam {
 /// \param timing     the points' times
 /// \param parameters must be valid (\ref validate)
 /// \param[out] features overwritten; its memory is reused. In the order of the scan lines.
+/// \param selectable empty, or one per point of the cloud: only points with a nonzero entry become features, while
+///                   all points serve as neighbours, so that a cut does not look like an edge
 void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-                     const FeatureParameters& parameters, FeatureSet& features);
+                     const FeatureParameters& parameters, FeatureSet& features,
+                     const std::vector<std::uint8_t>& selectable = {});
 
 }  // namespace pcl_floam

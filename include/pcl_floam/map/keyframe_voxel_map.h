@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/feature_kind.h>
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/map/neighbor_search.h>
 
@@ -22,9 +23,6 @@ enum class SearchMethod : std::uint8_t {
   voxel,  ///< the map's own hashed voxels: nothing to build
   kdtree  ///< FLANN's KD-tree (the paper's), rebuilt after each keyframe
 };
-
-/// The two kinds of features, and layers of the map.
-enum class FeatureKind : std::uint8_t { edge, plane };
 
 [[nodiscard]] const char* toString(SearchMethod method);
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace pcl_floam {
@@ -41,5 +42,8 @@ public:
   /// All points within \p radius of \p query, in no particular order. Replaces the contents of \p neighbors.
   virtual void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const = 0;
 };
+
+/// FLANN's KD-tree over a fixed set of points (world frame, m; points that are not finite are left out).
+[[nodiscard]] std::unique_ptr<NeighborSearch> makeKdTreeSearch(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace pcl_floam

@@ -13,11 +13,6 @@
 
 namespace pcl_floam {
 
-/// The instant of the sweep that a pose describes.
-enum class PoseInstant : std::uint8_t { start, middle, end };
-
-[[nodiscard]] const char* toString(PoseInstant instant);
-
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
   SensorModel sensor;  ///< default "auto"

@@ -28,9 +28,10 @@ struct RegistrationRun {
   /// LOAM's iterative compensation: called before each iteration with the present pose, to undistort the source
   /// anew. Must keep the features' number and order. Empty: the source stays as it is.
   std::function<void(const SE3& target_T_source, FeatureSet& source)> recompensate;
-  /// With `recompensate`: how much a point at the start of the sweep moves with the pose, whose instant is the end.
-  /// 0 if the start of the sweep is held by the last pose, 1 (the default) if the sweep is rigid.
-  double response_at_start = 1.0;
+  /// With `recompensate`: by how much more of a change of the pose a point at the sweep's end follows than one at its
+  /// start, while one at `reference` follows all of it. 0 (the default) if the sweep moves as one.
+  double response_slope = 0.0;
+  double reference = 1.0;  ///< with `recompensate`: the instant of the pose, as a fraction of the sweep
 };
 
 /// Estimates the pose of a scan's features in a map by minimising the weighted point-to-line and point-to-plane

@@ -1,0 +1,95 @@
+/// \file feature_extraction.h
+/// Edge and plane features as a PCL filter.
+#pragma once
+
+#include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/feature_kind.h>
+
+#include <pcl/filters/filter_indices.h>
+
+namespace pcl_floam {
+
+/// Selects the edge points or the plane points of a lidar scan (the paper's "Sensor Model and Feature Extraction").
+///
+/// Used as any `pcl::FilterIndices`:
+/// \code
+/// pcl_floam::FeatureExtraction<pcl::PointXYZI> extraction;
+/// extraction.setInputCloud(scan);
+/// extraction.setFeatureKind(pcl_floam::FeatureKind::edge);
+/// extraction.filter(edges);            // or filter(indices)
+/// \endcode
+/// or, for both kinds in one pass with smoothness and time, by extract().
+///
+/// With indices set, features are chosen among them, while all points of the cloud serve as neighbours. With
+/// `setNegative(true)` the finite points that are no such feature are selected. Points that are not finite are
+/// selected in neither case and count as removed. A cloud in which no scan lines are found has no features;
+/// getScanLines() tells why.
+template <typename PointT>
+class FeatureExtraction : public pcl::FilterIndices<PointT> {
+  using Base = pcl::FilterIndices<PointT>;
+
+public:
+  using Ptr = pcl::shared_ptr<FeatureExtraction<PointT>>;
+  using ConstPtr = pcl::shared_ptr<const FeatureExtraction<PointT>>;
+  using PointCloud = typename Base::PointCloud;
+
+  /// \param extract_removed_indices whether getRemovedIndices() is to be filled, as in every PCL filter
+  explicit FeatureExtraction(bool extract_removed_indices = false) : Base(extract_removed_indices)
+  {
+    this->filter_name_ = "FeatureExtraction";
+  }
+
+  /// Which features filter() selects. Default: edges.
+  void setFeatureKind(FeatureKind kind) { kind_ = kind; }
+  [[nodiscard]] FeatureKind getFeatureKind() const { return kind_; }
+
+  /// \throws std::invalid_argument if a parameter is out of its range.
+  void setParameters(const FeatureParameters& parameters)
+  {
+    validate(parameters);
+    parameters_ = parameters;
+  }
+  [[nodiscard]] const FeatureParameters& getParameters() const { return parameters_; }
+
+  /// The sensor's beams, for clouds that neither have a ring field nor keep the sensor's order. Default: unknown.
+  void setSensor(const SensorModel& sensor) { sensor_ = sensor; }
+  [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
+
+  /// Where the scan lines are to come from. Default: automatic.
+  void setScanLineSource(ScanLineSource source) { line_source_ = source; }
+  [[nodiscard]] ScanLineSource getScanLineSource() const { return line_source_; }
+
+  /// Where the points' times are to come from. Default: automatic.
+  void setScanTimingSource(ScanTimingSource source) { timing_source_ = source; }
+  [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
+
+  /// Edges and planes of the input cloud in one pass.
+  /// \return false if there is no input cloud or it has no scan lines; then \p features is empty.
+  bool extract(FeatureSet& features);
+
+  /// The scan lines found by the last filter() or extract(): which source was used, how sure it is, why none.
+  [[nodiscard]] const ScanLines& getScanLines() const { return lines_; }
+
+  /// The timing found by the last filter() or extract().
+  [[nodiscard]] const ScanTiming& getScanTiming() const { return timing_; }
+
+protected:
+  using Base::applyFilter;
+  void applyFilter(pcl::Indices& indices) override;
+
+private:
+  void extractFromInput(FeatureSet& features);
+
+  FeatureKind kind_ = FeatureKind::edge;
+  FeatureParameters parameters_;
+  SensorModel sensor_;
+  ScanLineSource line_source_ = ScanLineSource::automatic;
+  ScanTimingSource timing_source_ = ScanTimingSource::automatic;
+  ScanLines lines_;
+  ScanTiming timing_;
+};
+
+}  // namespace pcl_floam
+
+#include <pcl_floam/filters/impl/feature_extraction.hpp>

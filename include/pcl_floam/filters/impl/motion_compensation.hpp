@@ -1,0 +1,54 @@
+#pragma once
+
+#include <pcl/common/point_tests.h>
+#include <pcl/point_types.h>
+
+#include <stdexcept>
+
+namespace pcl_floam {
+
+template <typename PointT>
+void MotionCompensation<PointT>::setTwist(const Vector6& twist)
+{
+  if (!twist.allFinite()) {
+    throw std::invalid_argument("motion compensation: the motion over the sweep is not finite");
+  }
+  twist_ = twist;
+}
+
+template <typename PointT>
+void MotionCompensation<PointT>::applyFilter(PointCloud& output)
+{
+  const CloudView cloud = viewOf(*this->input_);
+  ScanLines lines;
+  timing_ = findScanTiming(cloud, lines, timing_source_);
+  if (!timing_.valid() && timing_source_ != ScanTimingSource::none) {  // without a time field, scan lines must tell
+    findScanLines(cloud, sensor_, ScanLineSource::automatic, lines);
+    timing_ = findScanTiming(cloud, lines, timing_source_);
+  }
+
+  if (this->fake_indices_ || !this->indices_) {
+    output = *this->input_;
+  } else {
+    pcl::copyPointCloud(*this->input_, *this->indices_, output);
+  }
+  const SweepMotion motion(twist_, fractionOf(instant_));
+  if (!timing_.valid() || motion.isStill()) {
+    return;
+  }
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    PointT& point = output[i];
+    if (!pcl::isXYZFinite(point)) {
+      continue;
+    }
+    const std::size_t source = this->fake_indices_ ? i : static_cast<std::size_t>((*this->indices_)[i]);
+    const SE3 reference_T_sensor = motion.at(timing_.at(cloud, source));
+    point.getVector3fMap() = (reference_T_sensor * point.getVector3fMap().template cast<double>()).template cast<float>();
+    if constexpr (pcl::traits::has_normal_v<PointT>) {
+      point.getNormalVector3fMap() =
+          (reference_T_sensor.rotation * point.getNormalVector3fMap().template cast<double>()).template cast<float>();
+    }
+  }
+}
+
+}  // namespace pcl_floam

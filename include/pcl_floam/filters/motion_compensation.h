@@ -1,0 +1,80 @@
+/// \file motion_compensation.h
+/// The undoing of a sweep's distortion as a PCL filter.
+#pragma once
+
+#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/sweep_motion.h>
+
+#include <pcl/filters/filter.h>
+
+namespace pcl_floam {
+
+/// Re-expresses every point of a sweep at one instant of it, given the motion over the sweep (Eq. 3, 4 and 12).
+///
+/// The paper's stage 1 is this filter with the predicted motion log(T_{k-2}^-1 T_{k-1}) (Eq. 2), stage 2 the same
+/// filter on the same input with the optimised motion log(T_{k-1}^-1 T_k) (Eq. 12a).
+/// \code
+/// pcl_floam::MotionCompensation<PointXYZIRT> compensation;
+/// compensation.setInputCloud(sweep);
+/// compensation.setMotion(start_T_end);   // the sensor's pose at the sweep's end, seen from its pose at the start
+/// compensation.filter(undistorted);      // as seen from the sensor at the sweep's end
+/// \endcode
+/// Points keep their order and all their fields, also their time; normals are turned with the points. Points that
+/// are not finite stay as they are. If no time can be told, or nothing moves, the output is a copy of the input.
+/// With indices set, the output holds just those points, in their order.
+template <typename PointT>
+class MotionCompensation : public pcl::Filter<PointT> {
+  using Base = pcl::Filter<PointT>;
+
+public:
+  using Ptr = pcl::shared_ptr<MotionCompensation<PointT>>;
+  using ConstPtr = pcl::shared_ptr<const MotionCompensation<PointT>>;
+  using PointCloud = typename Base::PointCloud;
+
+  MotionCompensation() { this->filter_name_ = "MotionCompensation"; }
+
+  /// The motion over the sweep as a twist xi = log(start_T_end): metres, then radians. Default: none.
+  /// \throws std::invalid_argument if it is not finite.
+  void setTwist(const Vector6& twist);
+  [[nodiscard]] const Vector6& getTwist() const { return twist_; }
+
+  /// The motion over the sweep as the sensor's pose at its end, seen from its pose at the start.
+  /// \throws std::invalid_argument if it is not finite.
+  template <typename Transform>
+  void setMotion(const Transform& start_T_end)
+  {
+    setTwist(log(SE3(start_T_end)));
+  }
+
+  /// The instant from which the output is seen. Default: the sweep's end.
+  void setReferenceInstant(PoseInstant instant) { instant_ = instant; }
+  [[nodiscard]] PoseInstant getReferenceInstant() const { return instant_; }
+
+  /// The sensor's beams, for clouds without times whose scan lines show the direction of rotation.
+  void setSensor(const SensorModel& sensor) { sensor_ = sensor; }
+  [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
+
+  /// Where the points' times are to come from. Default: automatic.
+  void setScanTimingSource(ScanTimingSource source) { timing_source_ = source; }
+  [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
+
+  /// The timing found by the last filter().
+  [[nodiscard]] const ScanTiming& getScanTiming() const { return timing_; }
+
+protected:
+  void applyFilter(PointCloud& output) override;
+
+private:
+  Vector6 twist_ = Vector6::Zero();
+  PoseInstant instant_ = PoseInstant::end;
+  SensorModel sensor_;
+  ScanTimingSource timing_source_ = ScanTimingSource::automatic;
+  ScanTiming timing_;
+};
+
+}  // namespace pcl_floam
+
+#include <pcl_floam/filters/impl/motion_compensation.hpp>

@@ -1,0 +1,35 @@
+/// \file cloud_features.h
+/// From clouds to what the pose estimation works on.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/filters/sensor_model.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// The edges and planes of a lidar scan; empty sets if the cloud has no scan lines. Rows of organised clouds are not
+/// taken for scan lines here: depth images have them too.
+/// \param selectable see extractFeatures
+[[nodiscard]] FeatureSet scanLineFeatures(const CloudView& cloud, const SensorModel& sensor,
+                                          const FeatureParameters& parameters,
+                                          const std::vector<std::uint8_t>& selectable = {});
+
+/// Every measurable point as a plane feature, for clouds without scan lines.
+[[nodiscard]] FeatureSet pointFeatures(const CloudView& cloud, const std::vector<std::uint8_t>& selectable = {});
+
+/// The measurable points of a cloud, in double.
+[[nodiscard]] std::vector<Eigen::Vector3d> measurablePoints(const CloudView& cloud);
+
+class NeighborSearch;
+
+/// Median distance of a sample of the points to their nearest other point; 0 if there is none.
+[[nodiscard]] double pointSpacing(const std::vector<Eigen::Vector3d>& points, const NeighborSearch& search);
+
+}  // namespace pcl_floam
