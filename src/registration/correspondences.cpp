@@ -2,6 +2,9 @@
 
 #include "registration/line_plane_fit.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace pcl_floam {
 
 namespace {
@@ -16,30 +19,52 @@ PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
   return {query + plane.center, plane.normal};
 }
 
+/// Distance that a query may move without its first \p k neighbours changing or leaving the search radius.
+double unchangedWithin(const Neighbors& neighbors, int k, double search_radius)
+{
+  const double farthest = std::sqrt(static_cast<double>(neighbors[k - 1].squared_distance));
+  const double next =
+      neighbors.count > k ? std::sqrt(static_cast<double>(neighbors[k].squared_distance)) : search_radius;
+  return std::min(0.5 * (next - farthest), search_radius - farthest);
+}
+
+template <typename Factor, typename Fit>
+void findOne(const RegistrationProblem& problem, const NeighborSearch& search, int k, const Eigen::Vector3d& local,
+             double weight, double search_radius, const Fit& fit, Correspondence<Factor>& correspondence)
+{
+  correspondence.weight = 0.0;
+  correspondence.valid_within = 0.0;
+  Neighbors neighbors;
+  search.nearest(problem.origin + local, std::min(k + 1, kMaxNeighbors), search_radius, neighbors);
+  if (neighbors.count < k) {
+    return;
+  }
+  correspondence.searched_at = local;
+  correspondence.valid_within = k < kMaxNeighbors ? unchangedWithin(neighbors, k, search_radius) : 0.0;
+  neighbors.count = k;
+  if (const auto geometry = fit(neighbors, problem.parameters)) {
+    correspondence.factor = makeFactor(*geometry, local);
+    correspondence.weight = weight;
+  }
+}
+
 template <typename Factor, typename Fit>
 void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature>& features,
-                   const std::vector<double>& weights, const NeighborSearch& search, int neighbor_count,
-                   const SE3& local_T_sensor, double search_radius, Fit&& fit,
-                   std::vector<Correspondence<Factor>>& correspondences)
+                   const std::vector<double>& weights, const NeighborSearch& search, int k, const SE3& local_T_sensor,
+                   double search_radius, const Fit& fit, std::vector<Correspondence<Factor>>& correspondences)
 {
   correspondences.resize(features.size());
   // Each iteration writes its own element only: the result does not depend on who computes what.
 #pragma omp parallel for num_threads(problem.threads) schedule(dynamic, 64)
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(features.size()); ++i) {
-    const Feature& feature = features[static_cast<std::size_t>(i)];
-    Correspondence<Factor>& correspondence = correspondences[static_cast<std::size_t>(i)];
-    correspondence.weight = 0.0;
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(features.size()); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Feature& feature = features[i];
+    Correspondence<Factor>& correspondence = correspondences[i];
     correspondence.point = Eigen::Vector3d(feature.x, feature.y, feature.z);
+    correspondence.response = 1.0 + problem.response_slope * (feature.time - problem.reference);
     const Eigen::Vector3d local = local_T_sensor * correspondence.point;
-    Neighbors neighbors;
-    search.nearest(problem.origin + local, neighbor_count, search_radius, neighbors);
-    if (neighbors.count < neighbor_count) {
-      continue;
-    }
-    if (const auto geometry = fit(neighbors, problem.parameters)) {
-      correspondence.factor = makeFactor(*geometry, local);
-      correspondence.weight = weights[static_cast<std::size_t>(i)];
-      correspondence.response = 1.0 + problem.response_slope * (feature.time - problem.reference);
+    if ((local - correspondence.searched_at).norm() >= correspondence.valid_within) {
+      findOne(problem, search, k, local, weights[i], search_radius, fit, correspondence);
     }
   }
 }

