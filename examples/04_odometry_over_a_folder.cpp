@@ -1,0 +1,24 @@
+// The whole paper over a folder of scans, in a few lines.
+//
+//   ./04_odometry_over_a_folder FOLDER
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/odometry/odometry.h>
+
+#include <iostream>
+
+int main(int argc, char** argv)
+try {
+  const pcl_floam::ScanSource scans(argc == 2 ? argv[1] : ".");
+  pcl_floam::OdometryPipeline odometry;  // for a known point type: pcl_floam::Odometry<PointT>
+  pcl::PCLPointCloud2 scan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    scans.read(i, scan);
+    const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
+    std::cout << scans.path(i).filename().string() << ": " << toString(report.state) << ", at "
+              << report.world_T_sensor.translation.transpose() << '\n';
+  }
+  return 0;
+} catch (const pcl_floam::FileError& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
+}
