@@ -25,3 +25,9 @@ if(PCL_FLOAM_SANITIZER)
   target_compile_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER} -fno-omit-frame-pointer)
   target_link_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER})
 endif()
+
+# For libraries: the same flags without linking to the target, which an exported library must not mention.
+function(pcl_floam_use_build_flags target)
+  target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:pcl_floam_build_flags,INTERFACE_COMPILE_OPTIONS>)
+  target_link_options(${target} PRIVATE $<TARGET_PROPERTY:pcl_floam_build_flags,INTERFACE_LINK_OPTIONS>)
+endfunction()
