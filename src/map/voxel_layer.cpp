@@ -19,6 +19,9 @@ std::size_t hashOf(const BlockKey& key)
   return static_cast<std::size_t>(h ^ (h >> 32));
 }
 
+/// Block numbers stay below this, with room to step to neighbours: 32 bits hold twice as many.
+constexpr double kMaxBlockNumber = 1e9;
+
 /// Squared distance along one axis from a coordinate to the interval [low, low + size].
 float squaredGap(float coordinate, float low, float size)
 {
@@ -32,6 +35,11 @@ VoxelLayer::VoxelLayer(double voxel_size)
     : block_size_(voxel_size * kVoxelsPerAxis), voxel_size_(static_cast<float>(voxel_size))
 {
   rebuildTable(1024);
+}
+
+bool VoxelLayer::isRepresentable(const Eigen::Vector3d& point) const
+{
+  return (point.array().abs() < kMaxBlockNumber * block_size_).all();  // false for NaN, too
 }
 
 BlockKey VoxelLayer::keyOf(const Eigen::Vector3d& point) const
@@ -96,6 +104,9 @@ std::int32_t VoxelLayer::findOrAddBlock(const BlockKey& key)
 
 void VoxelLayer::insert(const Eigen::Vector3d& point)
 {
+  if (!isRepresentable(point)) {
+    return;
+  }
   const BlockQuery place = blockQuery(point);
   Block& block = blocks_[static_cast<std::size_t>(findOrAddBlock(place.key))];
   int voxel = 0;
@@ -162,14 +173,30 @@ void VoxelLayer::visitBlocks(const Eigen::Vector3d& query, double radius, const 
 {
   const BlockQuery center = blockQuery(query);
   const auto size = static_cast<float>(block_size_);
-  const int reach = static_cast<int>(std::ceil(radius / block_size_));
+  const auto cornerOf = [&](double dx, double dy, double dz) {
+    return Eigen::Vector3f(static_cast<float>(dx) * size, static_cast<float>(dy) * size,
+                           static_cast<float>(dz) * size);
+  };
+  const auto isNear = [&](const Eigen::Vector3f& corner) {
+    return squaredGap(center.offset.x(), corner.x(), size) + squaredGap(center.offset.y(), corner.y(), size) +
+               squaredGap(center.offset.z(), corner.z(), size) <=
+           squared_limit;
+  };
+  const double reach = std::ceil(radius / block_size_);
+  if (std::pow(2.0 * reach + 1.0, 3.0) >= static_cast<double>(blocks_.size())) {
+    for (const Block& block : blocks_) {  // fewer blocks than places where one could be
+      const Eigen::Vector3f corner =
+          cornerOf(static_cast<double>(block.key.x) - center.key.x, static_cast<double>(block.key.y) - center.key.y,
+                   static_cast<double>(block.key.z) - center.key.z);
+      if (isNear(corner)) {
+        visit(Eigen::Vector3f(corner - center.offset), block);
+      }
+    }
+    return;
+  }
   const auto visitOne = [&](int dx, int dy, int dz) {
-    const Eigen::Vector3f corner(size * static_cast<float>(dx), size * static_cast<float>(dy),
-                                 size * static_cast<float>(dz));
-    const float nearest2 = squaredGap(center.offset.x(), corner.x(), size) +
-                           squaredGap(center.offset.y(), corner.y(), size) +
-                           squaredGap(center.offset.z(), corner.z(), size);
-    if (nearest2 > squared_limit) {
+    const Eigen::Vector3f corner = cornerOf(dx, dy, dz);
+    if (!isNear(corner)) {
       return;
     }
     const std::int32_t block = findBlock({center.key.x + dx, center.key.y + dy, center.key.z + dz});
@@ -178,7 +205,7 @@ void VoxelLayer::visitBlocks(const Eigen::Vector3d& query, double radius, const 
     }
   };
   visitOne(0, 0, 0);
-  for (int ring = 1; ring <= reach; ++ring) {
+  for (int ring = 1; ring <= static_cast<int>(reach); ++ring) {
     for (int dz = -ring; dz <= ring; ++dz) {
       for (int dy = -ring; dy <= ring; ++dy) {
         // Inside the shell's faces only the two ends of the row belong to this ring.
@@ -194,7 +221,7 @@ void VoxelLayer::visitBlocks(const Eigen::Vector3d& query, double radius, const 
 void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const
 {
   neighbors.count = 0;
-  if (!query.allFinite()) {
+  if (!isRepresentable(query)) {
     return;
   }
   auto limit = static_cast<float>(radius * radius);
@@ -220,7 +247,7 @@ void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Nei
 void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const
 {
   neighbors.clear();
-  if (!query.allFinite()) {
+  if (!isRepresentable(query)) {
     return;
   }
   const auto limit = static_cast<float>(radius * radius);

@@ -30,7 +30,8 @@ public:
   /// \param voxel_size m, > 0
   explicit VoxelLayer(double voxel_size);
 
-  /// Adds a finite point in the world frame; points of one voxel are averaged.
+  /// Adds a point in the world frame; points of one voxel are averaged. One that is not finite, or more than a
+  /// billion blocks away, is left out.
   void insert(const Eigen::Vector3d& point);
 
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
@@ -69,6 +70,8 @@ private:
     Eigen::Vector3f offset;  ///< of the query from that block's corner
   };
 
+  /// Finite, and its block's number fits 32 bits: within a billion blocks of the origin.
+  [[nodiscard]] bool isRepresentable(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockKey keyOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;

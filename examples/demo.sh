@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds, and runs the odometry.
+#
+#   bash examples/demo.sh                            simulates a lidar in a warehouse and tracks it
+#   bash examples/demo.sh SCANS [OPTION ...]         tracks your scans; options as of pcl_floam_odometry
+#
+# Results are in build/demo/result.
+set -euo pipefail
+here="$(cd "$(dirname "$0")/.." && pwd)"
+
+bash "$here/cmake/install_packages.sh"
+cmake -S "$here" -B "$here/build/demo" -G Ninja -DCMAKE_BUILD_TYPE=Release -DPCL_FLOAM_BUILD_TESTS=OFF >/dev/null
+cmake --build "$here/build/demo"
+bin="$here/build/demo/bin"
+result="$here/build/demo/result"
+
+if [ $# -gt 0 ]; then
+  "$bin/pcl_floam_odometry" "$@" --output "$result"
+else
+  data="$here/build/demo/warehouse"
+  [ -e "$data/poses_end.txt" ] || "$bin/pcl_floam_simulate" warehouse --output "$data"
+  "$bin/pcl_floam_odometry" "$data/scans" --ground-truth "$data/poses_end.txt" --output "$result"
+fi
