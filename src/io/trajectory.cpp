@@ -80,8 +80,7 @@ std::string columnsProblem(std::size_t columns, TrajectoryFormat format)
 StampedPose parsePose(const std::vector<std::string_view>& words, TrajectoryFormat format, std::size_t index,
                       std::string& problem)
 {
-  const TrajectoryFormat found = formatOf(words.size());
-  if (found == TrajectoryFormat::automatic || found != format) {
+  if (formatOf(words.size()) != format) {
     problem = columnsProblem(words.size(), format);
     return {};
   }
@@ -95,8 +94,29 @@ StampedPose parsePose(const std::vector<std::string_view>& words, TrajectoryForm
 
 }  // namespace
 
+TrajectoryFormat trajectoryFormat(const std::filesystem::path& file)
+{
+  const std::string content = readWholeFile(file);
+  std::string_view rest = content;
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    const auto words = splitWords(takeLine(rest));
+    if (words.empty() || words.front().front() == '#') {
+      continue;
+    }
+    const TrajectoryFormat format = formatOf(words.size());
+    if (format == TrajectoryFormat::automatic) {
+      throw FileError(file, "line " + std::to_string(line) + ": " + columnsProblem(words.size(), format));
+    }
+    return format;
+  }
+  throw FileError(file, "has no pose");
+}
+
 Trajectory readTrajectory(const std::filesystem::path& file, TrajectoryFormat format)
 {
+  if (format == TrajectoryFormat::automatic) {
+    format = trajectoryFormat(file);
+  }
   const std::string content = readWholeFile(file);
   Trajectory trajectory;
   std::string_view rest = content;
@@ -104,9 +124,6 @@ Trajectory readTrajectory(const std::filesystem::path& file, TrajectoryFormat fo
     const auto words = splitWords(takeLine(rest));
     if (words.empty() || words.front().front() == '#') {
       continue;
-    }
-    if (format == TrajectoryFormat::automatic) {
-      format = formatOf(words.size());
     }
     std::string problem;
     trajectory.push_back(parsePose(words, format, trajectory.size(), problem));

@@ -24,6 +24,11 @@ enum class TrajectoryFormat {
   tum         ///< stamp tx ty tz qx qy qz qw
 };
 
+/// The format of a file, told by the number of columns of its first pose.
+/// \throws FileError if the file cannot be read, has no pose, or has another number of columns.
+[[nodiscard]] TrajectoryFormat trajectoryFormat(const std::filesystem::path& file);
+
+/// Empty lines and lines that begin with # are skipped.
 /// \throws FileError (see scan_source.h) with file, line and reason.
 [[nodiscard]] Trajectory readTrajectory(const std::filesystem::path& file,
                                         TrajectoryFormat format = TrajectoryFormat::automatic);
