@@ -1,0 +1,215 @@
+#include "odometry_options.h"
+
+#include "command_line.h"
+
+namespace pcl_floam::tools {
+
+namespace {
+
+/// A number with its unit, its default shown.
+template <typename Number>
+void addNumber(CLI::App& app, const std::string& option, Number& value, const std::string& unit,
+               const std::string& description)
+{
+  app.add_option(option, value, description)->type_name(unit)->capture_default_str();
+}
+
+/// Words in lines that a terminal shows whole.
+std::string wrapped(const std::vector<std::string>& words)
+{
+  constexpr std::size_t kWidth = 60;
+  std::string text;
+  std::size_t line_begin = 0;
+  for (const std::string& word : words) {
+    const bool fits = text.size() + 1 + word.size() - line_begin <= kWidth;
+    text += text.empty() ? "" : (fits ? " " : "\n");
+    line_begin = fits ? line_begin : text.size();
+    text += word;
+  }
+  return text;
+}
+
+void addInputOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("Scans");
+  app.add_option("SCANS", o.scans, "folder of .pcd scans, or of KITTI's .bin scans")->required()->type_name("FOLDER");
+  addNumber(app, "--from", o.from, "N", "first scan to use; the folder's first is 0");
+  addNumber(app, "--max-scans", o.max_scans, "N", "use at most so many scans; 0 uses all");
+  app.add_option("--sensor", o.sensor, "lidar that made the scans\n" + wrapped(sensorNames()))
+      ->type_name("NAME")
+      ->capture_default_str();
+  app.add_option("--elevations", o.elevations, "beams of a lidar not in that list, e.g. -15,-13,-11")
+      ->type_name("DEG,DEG,...")
+      ->delimiter(',')
+      ->excludes("--sensor");
+  addNumber(app, "--scan-period", o.parameters.scan_period, "S",
+            "time from scan to scan; 0 takes it from times.txt,\nand 0.1 s for time stamps without that file");
+  addNumber(app, "--vertical-correction", o.parameters.vertical_correction, "DEG",
+            "turn every point up by this angle: corrects the\nsensor's calibration; KITTI's needs about 0.205");
+}
+
+void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("Structure of a scan (found automatically)");
+  addChoice(app, "--scan-lines", o.parameters.scan_line_source,
+            {{"auto", ScanLineSource::automatic},
+             {"ring-field", ScanLineSource::ring_field},
+             {"rows", ScanLineSource::organized_rows},
+             {"file-order", ScanLineSource::file_order},
+             {"elevation-table", ScanLineSource::elevation_table},
+             {"elevation-clusters", ScanLineSource::elevation_clusters}},
+            "where the points' scan lines come from");
+  addChoice(app, "--timing", o.parameters.timing_source,
+            {{"auto", ScanTimingSource::automatic},
+             {"field", ScanTimingSource::time_field},
+             {"columns", ScanTimingSource::columns},
+             {"azimuth", ScanTimingSource::azimuth},
+             {"none", ScanTimingSource::none}},
+            "where the points' times come from");
+  addChoice(app, "--rotation", o.parameters.rotation,
+            {{"auto", ScanRotation::automatic},
+             {"clockwise", ScanRotation::clockwise},
+             {"counterclockwise", ScanRotation::counterclockwise}},
+            "how the head turns, seen from above; for --timing azimuth");
+}
+
+void addResultOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("Results");
+  app.add_option("-o,--output", o.output, "folder for the results; created if need be")
+      ->required()
+      ->type_name("FOLDER");
+  app.add_option("--ground-truth", o.ground_truth,
+                 "true poses, KITTI or TUM format: adds accuracy and plots.\n"
+                 "One pose per scan of the folder, or TUM with times.txt")
+      ->type_name("FILE");
+  app.add_option("--calibration", o.calibration,
+                 "KITTI's calib.txt, when the true poses are the camera's,\nas in the KITTI odometry benchmark")
+      ->type_name("FILE")
+      ->needs("--ground-truth");
+  addChoice(app, "--pose-instant", o.pose_instant,
+            {{"auto", std::nullopt},
+             {"start", PoseInstant::start},
+             {"middle", PoseInstant::middle},
+             {"end", PoseInstant::end}},
+            "instant of the sweep that the poses describe; auto is the\n"
+            "middle for KITTI's .bin, whose ground truth is mid-sweep,\nand the end otherwise");
+  addChoice(app, "--plot", o.plot, {{"svg", ".svg"}, {"png", ".png"}, {"none", ""}},
+            "format of the picture of path, height and error");
+}
+
+void addCompensationOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("Motion compensation");
+  addChoice(app, "--compensation", o.parameters.compensation,
+            {{"two-stage", CompensationMode::two_stage},
+             {"loam", CompensationMode::iterative},
+             {"none", CompensationMode::none}},
+            "how the sweep's distortion is undone; none for scans that\n"
+            "are compensated already (KITTI odometry benchmark)");
+}
+
+void addFeatureOptions(CLI::App& app, FeatureParameters& p)
+{
+  app.option_defaults()->group("Features");
+  addChoice(app, "--smoothness", p.smoothness,
+            {{"vector-sum", SmoothnessKind::vector_sum}, {"mean-of-norms", SmoothnessKind::mean_of_norms}},
+            "reading of Eq. 1: LOAM's, or as printed");
+  addNumber(app, "--neighbors-each-side", p.neighbors_each_side, "N", "neighbours in Eq. 1, 2 to 10");
+  addNumber(app, "--sectors", p.sectors, "N", "sectors of a scan line, among which features are spread");
+  addNumber(app, "--edges-per-sector", p.edges_per_sector, "N", "most edges in one sector of one scan line");
+  addNumber(app, "--planes-per-sector", p.planes_per_sector, "N", "most planes in one sector of one scan line");
+  addNumber(app, "--min-range", p.min_range, "M", "nearer points are left out");
+  addNumber(app, "--max-range", p.max_range, "M", "farther points are left out");
+  addNumber(app, "--edge-threshold", p.edge_threshold, "M", "smoothness that an edge must exceed");
+  addNumber(app, "--edge-bend", p.edge_bend, "RATIO", "and relative to the points' spacing");
+  addNumber(app, "--plane-threshold", p.plane_threshold, "M", "smoothness that a plane must not exceed");
+}
+
+void addSolverOptions(CLI::App& app, RegistrationParameters& p)
+{
+  app.option_defaults()->group("Pose estimation");
+  addChoice(app, "--solver", p.solver, {{"gauss-newton", SolverKind::gauss_newton}, {"ceres", SolverKind::ceres}},
+            "least-squares solver");
+  addChoice(
+      app, "--weights", p.weights,
+      {{"uniform", WeightScheme::uniform}, {"inverted", WeightScheme::inverted}, {"printed", WeightScheme::printed}},
+      "smoothness weights of Eq. 9; inverted is what its text\nwants, printed is the formula");
+  addChoice(app, "--weight-normalization", p.weight_normalization,
+            {{"mean-one", WeightNormalization::mean_one}, {"sum-one", WeightNormalization::sum_one}},
+            "sum-one lets edges as a whole count as much as planes");
+  addChoice(app, "--kernel", p.kernel,
+            {{"none", RobustKernel::none},
+             {"huber", RobustKernel::huber},
+             {"cauchy", RobustKernel::cauchy},
+             {"geman-mcclure", RobustKernel::geman_mcclure}},
+            "robust kernel on the residuals");
+  addNumber(app, "--kernel-scale", p.kernel_scale, "M", "smallest scale of the kernel");
+  addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");
+  addNumber(app, "--translation-epsilon", p.translation_epsilon, "M", "converged at a step smaller than this");
+  addNumber(app, "--rotation-epsilon", p.rotation_epsilon, "RAD", "and smaller than this");
+}
+
+void addCorrespondenceOptions(CLI::App& app, RegistrationParameters& p)
+{
+  app.option_defaults()->group("Correspondences");
+  addNumber(app, "--edge-neighbors", p.edge_neighbors, "N", "map points a line is fitted to");
+  addNumber(app, "--plane-neighbors", p.plane_neighbors, "N", "map points a plane is fitted to");
+  addNumber(app, "--max-neighbor-distance", p.max_neighbor_distance, "M", "those points are no farther than this");
+  addNumber(app, "--line-ratio", p.line_ratio, "RATIO", "a line's first eigenvalue to its second, at least");
+  addNumber(app, "--plane-ratio", p.plane_ratio, "RATIO", "a plane's second eigenvalue to its third, at least");
+  addNumber(app, "--plane-spread", p.plane_spread, "RATIO", "a plane's second eigenvalue to its first, at least");
+  addNumber(app, "--min-correspondences", p.min_correspondences, "N", "with fewer the pose is predicted");
+  addNumber(
+      app, "--weak-threshold", p.weak_threshold, "RATIO",
+      "directions with less information than this keep the\npredicted motion (corridors); 0 follows every direction");
+}
+
+void addMapOptions(CLI::App& app, OdometryParameters& p)
+{
+  app.option_defaults()->group("Map");
+  addNumber(app, "--keyframe-translation", p.keyframe.translation, "M", "a scan enters the map after this way");
+  addNumber(app, "--keyframe-rotation", p.keyframe.rotation, "RAD", "or after this turn");
+  addNumber(app, "--edge-voxel-size", p.map.edge_voxel_size, "M", "one edge point is kept per voxel of this size");
+  addNumber(app, "--plane-voxel-size", p.map.plane_voxel_size, "M", "one plane point is kept per voxel of this size");
+  addNumber(app, "--horizon", p.map.horizon, "M", "the map forgets what is farther from the sensor");
+  addChoice(app, "--search", p.map.search, {{"voxel", SearchMethod::voxel}, {"kdtree", SearchMethod::kdtree}},
+            "nearest-neighbour search; both find the same points");
+}
+
+void addRunOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("Run");
+  addNumber(app, "--threads", o.parameters.threads, "N", "threads; the result does not depend on it");
+  app.add_flag("-q,--quiet", o.quiet, "no progress and no summary; problems are still told");
+  app.set_help_flag("-h,--help", "this help")->group("Run");
+  app.set_version_flag("--version", PCL_FLOAM_VERSION)->group("Run");
+}
+
+}  // namespace
+
+void addOptions(CLI::App& app, OdometryOptions& options)
+{
+  addInputOptions(app, options);
+  addScanStructureOptions(app, options);
+  addResultOptions(app, options);
+  addCompensationOptions(app, options);
+  addFeatureOptions(app, options.parameters.features);
+  addSolverOptions(app, options.parameters.registration);
+  addCorrespondenceOptions(app, options.parameters.registration);
+  addMapOptions(app, options.parameters);
+  addRunOptions(app, options);
+}
+
+OdometryParameters parametersFor(const OdometryOptions& options, ScanFormat format)
+{
+  OdometryParameters parameters = options.parameters;
+  parameters.sensor =
+      options.elevations.empty() ? sensorModel(options.sensor) : customSensor("custom", options.elevations);
+  const PoseInstant fitting = format == ScanFormat::kitti_bin ? PoseInstant::middle : PoseInstant::end;
+  parameters.pose_instant = options.pose_instant.value_or(fitting);
+  validate(parameters);
+  return parameters;
+}
+
+}  // namespace pcl_floam::tools

@@ -1,0 +1,40 @@
+/// \file odometry_options.h
+/// The command line of pcl_floam_odometry.
+#pragma once
+
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/odometry/odometry_parameters.h>
+
+#include <CLI/CLI.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pcl_floam::tools {
+
+struct OdometryOptions {
+  std::filesystem::path scans;
+  std::filesystem::path output;
+  std::filesystem::path ground_truth;  ///< empty: none
+  std::filesystem::path calibration;   ///< of the ground truth; empty: it is the lidar's
+  std::size_t from = 0;
+  std::size_t max_scans = 0;  ///< 0: all
+  std::string sensor = "auto";
+  std::vector<float> elevations;            ///< degrees; of a sensor of the user's own
+  std::optional<PoseInstant> pose_instant;  ///< nothing: what suits the format of the scans
+  std::string plot = ".svg";                ///< ending of the picture; empty: none
+  bool quiet = false;
+  OdometryParameters parameters;
+};
+
+/// Declares all options, with the defaults that \p options holds.
+void addOptions(CLI::App& app, OdometryOptions& options);
+
+/// The odometry's settings that follow from the options and the format of the scans.
+/// \throws std::invalid_argument for an unknown sensor or a setting out of its range.
+[[nodiscard]] OdometryParameters parametersFor(const OdometryOptions& options, ScanFormat format);
+
+}  // namespace pcl_floam::tools

@@ -1,0 +1,120 @@
+#include "odometry_run.h"
+
+#include "interruption.h"
+#include "progress_bar.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace pcl_floam::tools {
+
+namespace {
+
+/// s; for time stamps when neither times.txt nor --scan-period tells: the period of most rotating lidars.
+constexpr double kUsualPeriod = 0.1;
+
+double outputStamp(const ScanSource& scans, std::size_t scan, double period)
+{
+  return scans.stamp(scan).value_or(static_cast<double>(scan) * (period > 0.0 ? period : kUsualPeriod));
+}
+
+/// Reads and tracks one scan.
+class ScanTracker {
+public:
+  ScanTracker(OdometryPipeline& odometry, const ScanSource& scans, ProgressBar& progress, RunResult& result)
+      : odometry_(odometry), scans_(scans), progress_(progress), result_(result)
+  {
+  }
+
+  const OdometryReport& track(std::size_t scan)
+  {
+    const OdometryReport& report =
+        read(scan) ? odometry_.track(viewOf(cloud_), scans_.stamp(scan)) : odometry_.trackMissing(scans_.stamp(scan));
+    result_.scans.push_back(scan);
+    result_.poses.push_back(report.world_T_sensor);
+    ++result_.states[static_cast<std::size_t>(report.state)];
+    if (readable_) {
+      result_.times.push_back(report.milliseconds);
+      result_.last_read = report;
+      if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
+        progress_.message(scans_.path(scan).string() + ": not tracked: " + report.reason);
+      }
+    }
+    return report;
+  }
+
+private:
+  bool read(std::size_t scan)
+  {
+    readable_ = true;
+    try {
+      scans_.read(scan, cloud_);
+    } catch (const std::exception& error) {
+      readable_ = false;
+      result_.unreadable.push_back({scans_.path(scan).filename().string(), error.what()});
+      progress_.message("cannot be read, its pose is predicted: " + std::string(error.what()));
+    }
+    return readable_;
+  }
+
+  OdometryPipeline& odometry_;
+  const ScanSource& scans_;
+  ProgressBar& progress_;
+  RunResult& result_;
+  pcl::PCLPointCloud2 cloud_;
+  bool readable_ = false;
+};
+
+}  // namespace
+
+bool RunResult::isComplete() const
+{
+  return unreadable.empty() && count(TrackingState::predicted) == 0 && count(TrackingState::not_started) == 0;
+}
+
+ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder)
+{
+  if (options.from >= scans_in_folder) {
+    throw std::invalid_argument("--from " + std::to_string(options.from) + ": the folder has only " +
+                                std::to_string(scans_in_folder) + " scans, counted from 0");
+  }
+  const std::size_t rest = scans_in_folder - options.from;
+  return {options.from, options.max_scans == 0 ? rest : std::min(rest, options.max_scans)};
+}
+
+RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range, ResultWriter& writer,
+                      bool quiet)
+{
+  RunResult result;
+  ProgressBar progress(range.count, quiet);
+  ScanTracker tracker(odometry, scans, progress, result);
+  for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
+    const std::size_t scan = range.first + i;
+    const OdometryReport& report = tracker.track(scan);
+    try {
+      writer.write(scan, outputStamp(scans, scan, odometry.parameters().scan_period), report);
+    } catch (const FileError& error) {
+      result.output_problem = error.what();
+      progress.message(result.output_problem);
+      break;
+    }
+    progress.update(i + 1);
+  }
+  return result;
+}
+
+PosePairs pairWithTruth(const RunResult& result, const GroundTruth& truth)
+{
+  PosePairs pairs;
+  SE3 first_T_world;
+  for (std::size_t i = 0; i < result.scans.size(); ++i) {
+    const std::optional<SE3> true_pose = truth.pose(result.scans[i]);
+    if (true_pose) {
+      first_T_world = pairs.size() == 0 ? true_pose->inverse() : first_T_world;
+      pairs.add(result.poses[i], first_T_world * *true_pose);
+    }
+  }
+  return pairs;
+}
+
+}  // namespace pcl_floam::tools

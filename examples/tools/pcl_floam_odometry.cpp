@@ -1,0 +1,142 @@
+// pcl_floam_odometry: from a folder of scans to a trajectory and a map.
+
+#include "accuracy.h"
+#include "command_line.h"
+#include "ground_truth.h"
+#include "interruption.h"
+#include "odometry_options.h"
+#include "odometry_run.h"
+#include "run_summary.h"
+#include "trajectory_plot.h"
+
+#include <pcl_floam/io/map_io.h>
+
+#include <iostream>
+#include <memory>
+
+using namespace pcl_floam;
+using namespace pcl_floam::tools;
+
+namespace {
+
+constexpr const char* kDescription =
+    "Estimates the path of a lidar from its scans (F-LOAM), and builds a map on the way.\n"
+    "Only SCANS and --output are needed; everything else has a sensible default.";
+
+constexpr const char* kFooter =
+    "\nResults: poses.kitti.txt, poses.tum.txt, timing.csv (all written scan by scan), map_edges.pcd,\n"
+    "map_planes.pcd, summary.json, trajectory.svg (drawn by gnuplot).\n"
+    "\nExit status: 0 all scans tracked; 1 finished, but a scan could not be read or tracked or a result not\n"
+    "written; 2 bad option or path; 130, 143 interrupted: the results so far are written.\n"
+    "\nExamples:\n"
+    "  pcl_floam_odometry scans/ -o results\n"
+    "  pcl_floam_odometry 2011_09_26_drive_0001_sync/velodyne_points/data -o results --vertical-correction 0.205\n"
+    "  pcl_floam_odometry vlp16_scans/ -o results --sensor vlp16 --ground-truth truth.tum.txt\n";
+
+/// All that a run needs, checked before it begins.
+struct Preparation {
+  Preparation(const OdometryOptions& options)
+      : scans(options.scans), range(scanRange(options, scans.size())), odometry(parametersFor(options, scans.format()))
+  {
+    if (!options.ground_truth.empty()) {
+      truth.emplace(options.ground_truth, options.calibration, scans);
+    }
+    writer = std::make_unique<ResultWriter>(options.output);
+  }
+
+  ScanSource scans;
+  ScanRange range;
+  OdometryPipeline odometry;
+  std::optional<GroundTruth> truth;
+  std::unique_ptr<ResultWriter> writer;
+};
+
+/// Runs one step that writes a result. \return whether it could
+template <typename Step>
+bool writeResult(const Step& step)
+{
+  try {
+    step();
+    return true;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return false;
+  }
+}
+
+std::vector<Eigen::Vector3d> mapPoints(const KeyframeVoxelMap& map)
+{
+  std::vector<Eigen::Vector3d> points = map.points(FeatureKind::edge);
+  const std::vector<Eigen::Vector3d> planes = map.points(FeatureKind::plane);
+  points.insert(points.end(), planes.begin(), planes.end());
+  return points;
+}
+
+/// A missing gnuplot is told but no failure: the figures are all there.
+void drawPlot(const OdometryOptions& options, const OdometryPipeline& odometry, const RunResult& result,
+              const PosePairs& pairs)
+{
+  const std::filesystem::path image = options.output / ("trajectory" + options.plot);
+  TrajectoryPlot plot;
+  plot.title = options.scans.string();
+  plot.estimate = result.poses;
+  plot.pairs = pairs;
+  plot.map_points = mapPoints(odometry.map());
+  const std::string problem = drawTrajectory(plot, image);
+  if (!problem.empty()) {
+    std::cerr << image.string() << ": not drawn: " << problem << '\n';
+  }
+}
+
+int run(const OdometryOptions& options, Preparation& prepared)
+{
+  noteInterruptions();
+  const RunResult result =
+      runOdometry(prepared.odometry, prepared.scans, prepared.range, *prepared.writer, options.quiet);
+  const int signal = interruptedBy();
+  const PosePairs pairs = prepared.truth ? pairWithTruth(result, *prepared.truth) : PosePairs();
+  RunSummary summary{options, prepared.odometry, result, prepared.range.count, std::nullopt, signal};
+  if (pairs.size() > 0) {
+    summary.accuracy = measureAccuracy(pairs, {});
+  }
+  bool written = result.output_problem.empty();
+  written &= writeResult([&] { saveMap(prepared.odometry.map(), options.output); });
+  written &= writeResult([&] { writeTextFile(options.output / "summary.json", toJson(summary).dump(2) + "\n"); });
+  if (!options.plot.empty()) {
+    drawPlot(options, prepared.odometry, result, pairs);
+  }
+  if (!options.quiet) {
+    std::cout << describe(summary) << '\n';
+  }
+  if (signal != 0) {
+    constexpr int kSignalBase = 128;  // as shells have it
+    return kSignalBase + signal;
+  }
+  return written && result.isComplete() ? kExitFine : kExitIncomplete;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  OdometryOptions options;
+  CLI::App app(kDescription, "pcl_floam_odometry");
+  useReadableHelp(app);
+  addOptions(app, options);
+  app.footer(kFooter);
+  if (const auto status = parseCommandLine(app, argc, argv)) {
+    return *status;
+  }
+  std::unique_ptr<Preparation> prepared;
+  try {
+    prepared = std::make_unique<Preparation>(options);
+  } catch (const std::exception& error) {
+    return reportUsageError(app, error.what());
+  }
+  try {
+    return run(options, *prepared);
+  } catch (const std::exception& error) {
+    std::cerr << app.get_name() << ": " << error.what() << '\n';
+    return kExitIncomplete;
+  }
+}

@@ -1,0 +1,69 @@
+#include "result_writer.h"
+
+#include "stage_times.h"
+
+#include <pcl_floam/io/scan_source.h>
+
+#include <iomanip>
+#include <locale>
+#include <system_error>
+
+namespace pcl_floam::tools {
+
+namespace {
+
+const std::filesystem::path& created(const std::filesystem::path& folder)
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder, error)) {
+    throw FileError(folder, "cannot be made a folder" + (error ? ": " + error.message() : std::string()));
+  }
+  return folder;
+}
+
+}  // namespace
+
+ResultWriter::ResultWriter(const std::filesystem::path& folder)
+    : kitti_(created(folder) / "poses.kitti.txt", TrajectoryFormat::kitti),
+      tum_(folder / "poses.tum.txt", TrajectoryFormat::tum),
+      timing_path_(folder / "timing.csv"),
+      timing_(timing_path_)
+{
+  timing_.imbue(std::locale::classic());
+  timing_ << "scan";
+  for (const Stage& stage : kStages) {
+    timing_ << ',' << stage.name << "_ms";
+  }
+  timing_ << '\n' << std::fixed << std::setprecision(3) << std::flush;
+  if (!timing_) {
+    throw FileError(timing_path_, "cannot be written");
+  }
+}
+
+void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& report)
+{
+  const StampedPose pose{stamp, report.world_T_sensor};
+  kitti_.write(pose);
+  tum_.write(pose);
+  timing_ << scan;
+  for (const Stage& stage : kStages) {
+    timing_ << ',' << report.milliseconds.*stage.time;
+  }
+  timing_ << '\n' << std::flush;
+  if (!timing_) {
+    throw FileError(timing_path_, "cannot be written");
+  }
+}
+
+void writeTextFile(const std::filesystem::path& file, const std::string& text)
+{
+  std::ofstream stream(file);
+  stream << text;
+  stream.close();
+  if (!stream) {
+    throw FileError(file, "cannot be written");
+  }
+}
+
+}  // namespace pcl_floam::tools

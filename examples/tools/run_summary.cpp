@@ -1,0 +1,106 @@
+#include "run_summary.h"
+
+#include "settings_json.h"
+#include "stage_times.h"
+#include "text_format.h"
+
+#include <pcl_floam/evaluation/trajectory_metrics.h>
+
+#include <sys/resource.h>
+
+namespace pcl_floam::tools {
+
+namespace {
+
+double peakMemoryMegabytes()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts it in KiB
+}
+
+Json scansJson(const RunSummary& summary)
+{
+  const RunResult& result = summary.result;
+  Json unreadable = Json::array();
+  for (const UnreadableScan& scan : result.unreadable) {
+    unreadable.push_back({{"file", scan.file}, {"reason", scan.reason}});
+  }
+  return {{"planned", summary.planned_scans},
+          {"processed", result.poses.size()},
+          {"initialized", result.count(TrackingState::initialized)},
+          {"tracked", result.count(TrackingState::tracked)},
+          {"predicted", result.count(TrackingState::predicted)},
+          {"not_started", result.count(TrackingState::not_started)},
+          {"unreadable", unreadable}};
+}
+
+Json timesJson(const std::vector<StageTimes>& times)
+{
+  Json json;
+  for (const Stage& stage : kStages) {
+    const TimeStatistics statistics = timeStatistics(times, stage);
+    json[stage.name] = {
+        {"median", statistics.median}, {"p95", statistics.p95}, {"mean", statistics.mean}, {"max", statistics.max}};
+  }
+  return json;
+}
+
+Json structureJson(const OdometryReport& last)
+{
+  return {{"scan_lines", last.scan_lines},
+          {"scan_line_source", toString(last.scan_line_source)},
+          {"scan_line_confidence", last.scan_line_confidence},
+          {"timing_source", toString(last.timing_source)},
+          {"points", last.points},
+          {"edges", last.edges},
+          {"planes", last.planes}};
+}
+
+}  // namespace
+
+Json toJson(const RunSummary& summary)
+{
+  const RunResult& result = summary.result;
+  const KeyframeVoxelMap& map = summary.odometry.map();
+  Json json;
+  json["tool"] = std::string("pcl_floam_odometry ") + PCL_FLOAM_VERSION;
+  json["input"] = summary.options.scans.string();
+  json["interrupted_by_signal"] = summary.signal != 0 ? Json(summary.signal) : Json();
+  json["scans"] = scansJson(summary);
+  json["last_scan"] = structureJson(result.last_read);
+  json["path_length_m"] = pathLength(result.poses);
+  json["map_points"] = {{"edges", map.size(FeatureKind::edge)}, {"planes", map.size(FeatureKind::plane)}};
+  json["milliseconds"] = timesJson(result.times);
+  json["peak_memory_mb"] = peakMemoryMegabytes();
+  if (summary.accuracy) {
+    json["accuracy"] = toJson(*summary.accuracy);
+    json["accuracy"]["ground_truth"] = summary.options.ground_truth.string();
+    json["accuracy"]["vertical_correction_deg"] = summary.odometry.parameters().vertical_correction;
+  }
+  json["settings"] = toJson(summary.odometry.parameters());
+  return json;
+}
+
+std::string describe(const RunSummary& summary)
+{
+  const RunResult& result = summary.result;
+  const OdometryReport& last = result.last_read;
+  const TimeStatistics total = timeStatistics(result.times, kStages.back());
+  std::string text =
+      formatted("%-22s %zu of %zu, %zu tracked, %zu predicted, %zu unreadable", "scans", result.poses.size(),
+                summary.planned_scans, result.count(TrackingState::tracked) + result.count(TrackingState::initialized),
+                result.count(TrackingState::predicted), result.unreadable.size());
+  text += formatted("\n%-22s %zu by %s, times by %s", "scan lines", last.scan_lines, toString(last.scan_line_source),
+                    toString(last.timing_source));
+  text += formatted("\n%-22s median %.1f ms, 95 %% below %.1f ms", "time per scan", total.median, total.p95);
+  text += formatted("\n%-22s %.1f m", "path", pathLength(result.poses));
+  if (summary.accuracy) {
+    text += "\n" + describe(*summary.accuracy);
+    text += formatted("\n%-22s %g deg", "vertical correction", summary.odometry.parameters().vertical_correction);
+  }
+  text += formatted("\n%-22s %s", "results in", summary.options.output.c_str());
+  return text;
+}
+
+}  // namespace pcl_floam::tools

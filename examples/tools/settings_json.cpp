@@ -1,0 +1,90 @@
+#include "settings_json.h"
+
+#include "text_format.h"
+
+namespace pcl_floam::tools {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* nameOf(ScanRotation rotation)
+{
+  switch (rotation) {
+    case ScanRotation::automatic: return "automatic";
+    case ScanRotation::clockwise: return "clockwise";
+    case ScanRotation::counterclockwise: return "counterclockwise";
+  }
+  return "unknown";
+}
+
+/// The double with the fewest digits that is the float: 0.04, not 0.03999999910593033.
+double shortest(float value)
+{
+  return std::stod(formatted("%.6g", static_cast<double>(value)));
+}
+
+Json featuresJson(const FeatureParameters& p)
+{
+  return {{"smoothness", toString(p.smoothness)},
+          {"neighbors_each_side", p.neighbors_each_side},
+          {"sectors", p.sectors},
+          {"edges_per_sector", p.edges_per_sector},
+          {"planes_per_sector", p.planes_per_sector},
+          {"min_range_m", shortest(p.min_range)},
+          {"max_range_m", shortest(p.max_range)},
+          {"edge_threshold_m", shortest(p.edge_threshold)},
+          {"edge_bend", shortest(p.edge_bend)},
+          {"plane_threshold_m", shortest(p.plane_threshold)}};
+}
+
+Json registrationJson(const RegistrationParameters& p)
+{
+  return {{"solver", toString(p.solver)},
+          {"weights", toString(p.weights)},
+          {"weight_normalization", toString(p.weight_normalization)},
+          {"kernel", toString(p.kernel)},
+          {"kernel_scale_m", p.kernel_scale},
+          {"max_iterations", p.max_iterations},
+          {"translation_epsilon_m", p.translation_epsilon},
+          {"rotation_epsilon_rad", p.rotation_epsilon},
+          {"edge_neighbors", p.edge_neighbors},
+          {"plane_neighbors", p.plane_neighbors},
+          {"max_neighbor_distance_m", p.max_neighbor_distance},
+          {"line_ratio", p.line_ratio},
+          {"plane_ratio", p.plane_ratio},
+          {"plane_spread", p.plane_spread},
+          {"min_correspondences", p.min_correspondences},
+          {"weak_threshold", p.weak_threshold}};
+}
+
+Json mapJson(const OdometryParameters& p)
+{
+  return {{"keyframe_translation_m", p.keyframe.translation},
+          {"keyframe_rotation_rad", p.keyframe.rotation},
+          {"edge_voxel_size_m", p.map.edge_voxel_size},
+          {"plane_voxel_size_m", p.map.plane_voxel_size},
+          {"horizon_m", p.map.horizon},
+          {"search", toString(p.map.search)}};
+}
+
+}  // namespace
+
+Json toJson(const OdometryParameters& p)
+{
+  Json json = {{"sensor", p.sensor.name},
+               {"scan_lines", toString(p.scan_line_source)},
+               {"timing", toString(p.timing_source)},
+               {"rotation", nameOf(p.rotation)},
+               {"vertical_correction_deg", p.vertical_correction},
+               {"scan_period_s", p.scan_period},
+               {"compensation", toString(p.compensation)},
+               {"pose_instant", toString(p.pose_instant)},
+               {"threads", p.threads}};
+  json["features"] = featuresJson(p.features);
+  json["registration"] = registrationJson(p.registration);
+  json["map"] = mapJson(p);
+  return json;
+}
+
+}  // namespace pcl_floam::tools
