@@ -42,4 +42,7 @@ struct GroundArea {
 /// The smallest area around another that has the shape of a panel, so that both axes have one scale.
 [[nodiscard]] GroundArea fittedTo(const GroundArea& area, const PlotLayout& layout);
 
+/// m of the ground per pixel of the top view.
+[[nodiscard]] double metersPerPixel(const GroundArea& area, const PlotLayout& layout);
+
 }  // namespace pcl_floam::tools

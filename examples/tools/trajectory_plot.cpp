@@ -1,6 +1,7 @@
 #include "trajectory_plot.h"
 
 #include "gnuplot.h"
+#include "map_sketch.h"
 #include "plot_frame.h"
 #include "text_format.h"
 
@@ -75,17 +76,14 @@ std::string pathBlock(const char* name, const Points& path, const Points& refere
   return block + "EOD\n";
 }
 
-/// As many of the map's points as a picture needs, spread evenly over them.
-std::string mapBlock(const Points& points, const GroundArea& area)
+/// The map as seen from above, no finer than the picture.
+std::string mapBlock(const Points& points, const PlotData& data)
 {
-  constexpr std::size_t kMostPoints = 9000;
-  Points shown;
-  std::copy_if(points.begin(), points.end(), std::back_inserter(shown),
-               [&area](const Eigen::Vector3d& point) { return area.contains(point); });
-  const std::size_t step = shown.size() / kMostPoints + 1;
+  constexpr double kFinestCell = 0.3;  // m; finer than the map's own voxels it would fall apart
+  const double cell = std::max(kFinestCell, 2.0 * metersPerPixel(data.area, data.layout));
   std::string block = "$map << EOD\n";
-  for (std::size_t i = 0; i < shown.size(); i += step) {
-    block += formatted("%.2f %.2f\n", shown[i].x(), shown[i].y());
+  for (const Eigen::Vector2d& middle : uprightCells(points, data.area, cell)) {
+    block += formatted("%.2f %.2f %.2f\n", middle.x(), middle.y(), 0.5 * cell);
   }
   return block + "EOD\n";
 }
@@ -101,18 +99,19 @@ std::string preamble(const PlotLayout& layout, const std::string& title, const s
                 "background '#ffffff'\n",
                 layout.width, layout.height);
   script += "set output " + inQuotes(image.string()) + "\nset encoding utf8\n";
-  script += "set multiplot title " + inQuotes(title) + " offset 0,0.3\n";
+  script +=
+      "set multiplot\nset label 1 " + inQuotes(title) + formatted(" at screen %.4f,0.965\n", layout.top_view.left);
   script += "set border 3 lc rgb '#606060'\nset tics nomirror out scale 0.5\nset grid lc rgb '#e4e4e4' lw 1 lt 1\n";
-  script += "set key top right opaque box lc rgb '#d0d0d0' width 1 samplen 2\n";
   return script;
 }
 
+/// Puts the next plot into a panel, its key above it.
 std::string placed(const Panel& panel)
 {
-  return formatted(
-      "set lmargin at screen %.4f\nset rmargin at screen %.4f\nset bmargin at screen %.4f\n"
-      "set tmargin at screen %.4f\n",
-      panel.left, panel.right, panel.bottom, panel.top);
+  return formatted("set lmargin at screen %.4f\nset rmargin at screen %.4f\n", panel.left, panel.right) +
+         formatted("set bmargin at screen %.4f\nset tmargin at screen %.4f\n", panel.bottom, panel.top) +
+         "set key right bottom horizontal nobox samplen 2\n" +
+         formatted("set key at screen %.4f,%.4f\n", panel.right, panel.top + 0.005);
 }
 
 std::string topView(const PlotData& data, bool with_map)
@@ -123,12 +122,12 @@ std::string topView(const PlotData& data, bool with_map)
                       area.lowest.y(), area.highest.y());
   script += "set xlabel 'x / m' offset 0,0.4\nset ylabel 'y / m' offset 1,0\nplot ";
   if (with_map) {
-    script += "$map using 1:2 with points pt 7 ps 0.12 lc rgb '#a9b4bf' title 'map', ";
+    script += "$map using 1:2:3:3 with boxxyerror fs solid noborder lc rgb '#aab6c2' title 'map', ";
   }
   if (!data.truth.empty()) {
     script += formatted("$truth using 2:3 with %s title 'ground truth', ", kTruthStyle);
   }
-  script += formatted("$estimate using 2:3 with %s title 'pcl_floam', ", kEstimateStyle);
+  script += formatted("$estimate using 2:3 with %s title 'estimate', ", kEstimateStyle);
   script += "$estimate using 2:3 every ::0::0 with points pt 7 ps 1 lc rgb '#2a8f4d' title 'start', ";
   script += formatted("$estimate using 2:3 every ::%zu with points pt 5 ps 0.9 lc rgb '#b8312f' title 'end'\n",
                       data.estimate.empty() ? 0 : data.estimate.size() - 1);
@@ -144,22 +143,22 @@ std::string heightPlot(const PlotData& data)
   std::string script = placed(data.layout.height_plot);
   script +=
       "set autoscale x\nset autoscale y\nset xlabel 'distance / m' offset 0,0.4\nset ylabel 'height / m' offset 1,0\n";
-  script += "set key bottom left\nset xrange [0:*]\n";
+  script += "unset label 1\nset key off\nset xrange [0:*]\n";
   script += flat ? "set yrange [*<-0.5:0.5<*]\n" : "set yrange [*:*]\n";
   script += "plot ";
   if (!data.truth.empty()) {
     script += formatted("$truth using 1:4 with %s title 'ground truth', ", kTruthStyle);
   }
-  return script + formatted("$estimate using 1:4 with %s title 'pcl_floam'\n", kEstimateStyle);
+  return script + formatted("$estimate using 1:4 with %s title 'estimate'\n", kEstimateStyle);
 }
 
 std::string errorPlot(const PlotData& data)
 {
   std::string script = placed(data.layout.error_plot);
-  script += "set ylabel 'position error / m' offset 1,0\nset yrange [0:*]\nset key top left\n";
+  script += "set ylabel 'position error / m' offset 1,0\nset yrange [0:*]\nset key on\n";
   script += "plot $paired using 1:5 with filledcurves x1 fc rgb '#f2c9c8' notitle, ";
-  script += "$paired using 1:5 with lines lw 2 lc rgb '#b8312f' title 'in space', ";
-  script += "$paired using 1:6 with lines lw 1.5 dt 2 lc rgb '#404040' title 'in the plane'\n";
+  script += "$paired using 1:5 with lines lw 2 lc rgb '#b8312f' title 'in all', ";
+  script += "$paired using 1:6 with lines lw 1.5 dt 2 lc rgb '#404040' title 'horizontal'\n";
   return script;
 }
 
@@ -171,7 +170,7 @@ std::string plotScript(const TrajectoryPlot& plot, const std::filesystem::path& 
   std::string script = pathBlock("estimate", data.estimate, {});
   script += pathBlock("truth", data.truth, {});
   script += pathBlock("paired", data.paired, data.truth);
-  script += mapBlock(plot.map_points, data.area);
+  script += mapBlock(plot.map_points, data);
   script += preamble(data.layout, plot.title, image);
   script += topView(data, !plot.map_points.empty());
   script += heightPlot(data);
