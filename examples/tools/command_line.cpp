@@ -24,6 +24,18 @@ public:
   }
 };
 
+/// What is no number passes: converting it fails with a message of its own.
+template <typename Accept>
+CLI::Validator numberCheck(const std::string& demand, const Accept& accept)
+{
+  const auto check = [demand, accept](const std::string& given) {
+    double number = 0.0;
+    const bool is_number = CLI::detail::lexical_cast(given, number);
+    return !is_number || accept(number) ? std::string() : demand + ", not " + given;
+  };
+  return {check, ""};
+}
+
 }  // namespace
 
 int reportUsageError(const CLI::App& app, std::string message)
@@ -44,6 +56,16 @@ std::optional<int> parseCommandLine(CLI::App& app, int argc, char** argv)
     return reportUsageError(app, error.what());
   }
   return std::nullopt;
+}
+
+CLI::Validator notNegative()
+{
+  return numberCheck("must not be negative", [](double number) { return number >= 0.0; });
+}
+
+CLI::Validator positive()
+{
+  return numberCheck("must be greater than 0", [](double number) { return number > 0.0; });
 }
 
 void useReadableHelp(CLI::App& app)

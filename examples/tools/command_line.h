@@ -27,6 +27,10 @@ int reportUsageError(const CLI::App& app, std::string message);
 /// Help that shows of an option its name, unit, default and description.
 void useReadableHelp(CLI::App& app);
 
+/// Checks of numbers. CLI11 by itself takes -1 for a very large count.
+[[nodiscard]] CLI::Validator notNegative();
+[[nodiscard]] CLI::Validator positive();
+
 template <typename Value>
 using Choices = std::vector<std::pair<std::string, Value>>;
 
@@ -54,7 +58,7 @@ CLI::Option* addChoice(CLI::App& app, const std::string& option, Value& value, c
   };
   const auto check = [names, list](const std::string& given) {
     const bool known = std::find(names.begin(), names.end(), given) != names.end();
-    return known ? std::string() : "'" + given + "' is none of " + list;
+    return known ? std::string() : "must be one of " + list + ", not '" + given + "'";
   };
   return app.add_option_function<std::string>(option, store, description + "\n" + list)
       ->check(CLI::Validator(check, ""))

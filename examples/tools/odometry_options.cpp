@@ -2,6 +2,8 @@
 
 #include "command_line.h"
 
+#include <type_traits>
+
 namespace pcl_floam::tools {
 
 namespace {
@@ -11,7 +13,10 @@ template <typename Number>
 void addNumber(CLI::App& app, const std::string& option, Number& value, const std::string& unit,
                const std::string& description)
 {
-  app.add_option(option, value, description)->type_name(unit)->capture_default_str();
+  CLI::Option* added = app.add_option(option, value, description)->type_name(unit)->capture_default_str();
+  if (std::is_unsigned_v<Number>) {
+    added->check(notNegative());
+  }
 }
 
 /// Words in lines that a terminal shows whole.

@@ -61,17 +61,17 @@ void addMetricOptions(CLI::App& app, EvaluationOptions& o)
                  "and tenths of a path that is shorter than 200 m")
       ->type_name("M,M,...")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   app.add_option(
          "--step", o.accuracy.step,
          "poses from one sub-sequence's start to the next one's; by\ndefault 10 as KITTI's, and 1 for short paths")
       ->type_name("N")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   addChoice(app, "--align", o.accuracy.align, {{"se3", true}, {"first", false}},
             "before ATE: best rigid motion, or first pose onto first pose");
   app.add_option("--rpe-step", o.accuracy.rpe_step, "RPE: poses from the first to the second of a pair")
       ->type_name("N")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   app.set_help_flag("-h,--help", "this help");
   app.set_version_flag("--version", PCL_FLOAM_VERSION);

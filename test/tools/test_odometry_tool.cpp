@@ -1,0 +1,284 @@
+// Runs the tools as a user does, and looks at their exit status, messages and files.
+
+#include "support/room_scans.h"
+#include "support/temporary_folder.h"
+
+#include <pcl_floam/io/map_io.h>
+#include <pcl_floam/io/trajectory.h>
+
+#include <nlohmann/json.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace pcl_floam {
+namespace {
+
+using test::contentOf;
+using test::TemporaryFolder;
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+/// A scene with scans along a straight drive, and tools run on it.
+class OdometryTool : public ::testing::Test {
+protected:
+  static constexpr std::size_t kScans = 8;
+  static constexpr double kStep = 0.3;  // m from scan to scan
+
+  OdometryTool()
+  {
+    std::string truth;
+    for (std::size_t i = 0; i < kScans; ++i) {
+      const double x = kStep * static_cast<double>(i);
+      folder.write("scans/" + std::to_string(i) + ".bin", test::roomScan(x, 0.0));
+      truth += "1 0 0 " + std::to_string(x) + " 0 1 0 0 0 0 1 0\n";
+    }
+    folder.write("truth.txt", truth);
+  }
+
+  /// \param arguments for the shell; the present folder is the test's
+  [[nodiscard]] Outcome run(const std::string& tool, const std::string& arguments) const
+  {
+    const std::string command = "cd '" + folder.path().string() + "' && '" + tool + "' " + arguments + " >out 2>err";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(folder.path() / "out"),
+            contentOf(folder.path() / "err")};
+  }
+  [[nodiscard]] Outcome odometry(const std::string& arguments) const { return run(PCL_FLOAM_ODOMETRY, arguments); }
+  [[nodiscard]] Outcome evaluate(const std::string& arguments) const { return run(PCL_FLOAM_EVALUATE, arguments); }
+
+  [[nodiscard]] Trajectory poses() const { return readTrajectory(folder.path() / "result" / "poses.kitti.txt"); }
+  [[nodiscard]] nlohmann::json summary() const
+  {
+    return nlohmann::json::parse(contentOf(folder.path() / "result" / "summary.json"));
+  }
+  [[nodiscard]] std::ptrdiff_t lines(const std::string& file) const
+  {
+    const std::string content = contentOf(folder.path() / "result" / file);
+    return std::count(content.begin(), content.end(), '\n');
+  }
+
+  TemporaryFolder folder;
+};
+
+TEST_F(OdometryTool, WritesEveryResult)
+{
+  const Outcome outcome = odometry("scans -o result --ground-truth truth.txt --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lines("poses.kitti.txt"), static_cast<std::ptrdiff_t>(kScans));
+  EXPECT_EQ(lines("poses.tum.txt"), static_cast<std::ptrdiff_t>(kScans));
+  EXPECT_EQ(lines("timing.csv"), static_cast<std::ptrdiff_t>(kScans + 1));
+  const std::string timing = contentOf(folder.path() / "result" / "timing.csv");
+  const std::string columns = timing.substr(0, timing.find('\n'));
+  EXPECT_EQ(columns.rfind("scan,", 0), 0U);
+  EXPECT_EQ(columns.substr(columns.rfind(',')), ",total_ms");
+  EXPECT_FALSE(loadMap(folder.path() / "result").empty());
+  EXPECT_NE(outcome.out.find("t_rel"), std::string::npos);
+  EXPECT_NE(outcome.out.find("ATE"), std::string::npos);
+}
+
+TEST_F(OdometryTool, FollowsTheDrive)
+{
+  ASSERT_EQ(odometry("scans -o result --ground-truth truth.txt --plot none").status, 0);
+  const Trajectory trajectory = poses();
+  EXPECT_TRUE(trajectory.front().world_T_sensor.matrix().isIdentity());
+  EXPECT_NEAR(trajectory.back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
+  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["rms"].get<double>(), 0.05);
+  EXPECT_EQ(summary()["scans"]["tracked"], kScans - 1);
+}
+
+TEST_F(OdometryTool, DrawsThePictureIfGnuplotIsThereAndSaysSoIfNot)
+{
+  const Outcome outcome = odometry("scans -o result --ground-truth truth.txt");
+  EXPECT_EQ(outcome.status, 0);
+  const std::string picture = contentOf(folder.path() / "result" / "trajectory.svg");
+  const bool told = outcome.err.find("gnuplot is not installed") != std::string::npos;
+  EXPECT_NE(told, picture.find("</svg>") != std::string::npos);
+}
+
+TEST_F(OdometryTool, AScanThatCannotBeReadStopsNothing)
+{
+  folder.write("scans/3.bin", "not a scan");
+  const Outcome outcome = odometry("scans -o result --plot none");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("3.bin: byte 10"), std::string::npos) << outcome.err;
+  const Trajectory trajectory = poses();
+  ASSERT_EQ(trajectory.size(), kScans);
+  EXPECT_NEAR(trajectory[3].world_T_sensor.translation.x(), 3.0 * kStep, 0.1);
+  EXPECT_NEAR(trajectory.back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.1);
+  EXPECT_EQ(summary()["scans"]["predicted"], 1);
+  EXPECT_EQ(summary()["scans"]["unreadable"][0]["file"], "3.bin");
+}
+
+TEST_F(OdometryTool, AFolderOfUnreadableScansStillHasAllPoses)
+{
+  for (std::size_t i = 0; i < kScans; ++i) {
+    folder.write("scans/" + std::to_string(i) + ".bin", "");
+  }
+  EXPECT_EQ(odometry("scans -o result --ground-truth truth.txt --plot none").status, 1);
+  EXPECT_EQ(poses().size(), kScans);
+  EXPECT_EQ(summary()["scans"]["not_started"], kScans);
+}
+
+TEST_F(OdometryTool, APartOfTheScansIsComparedWithItsOwnPartOfTheTruth)
+{
+  ASSERT_EQ(odometry("scans -o result --from 2 --max-scans 4 --ground-truth truth.txt --plot none").status, 0);
+  EXPECT_EQ(poses().size(), 4U);
+  EXPECT_TRUE(poses().front().world_T_sensor.matrix().isIdentity());
+  EXPECT_EQ(summary()["accuracy"]["poses"], 4);
+  EXPECT_NEAR(summary()["accuracy"]["path_length_m"].get<double>(), 3.0 * kStep, 1e-9);
+  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+}
+
+TEST_F(OdometryTool, TruthWithTimesIsFoundByTime)
+{
+  std::string times;
+  std::string truth;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    times += std::to_string(100.0 + 0.1 * static_cast<double>(i)) + "\n";
+  }
+  for (int i = -3; i < 40; ++i) {  // twice as many, between the scans' times
+    const double stamp = 100.025 + 0.05 * i;
+    truth += std::to_string(stamp) + " " + std::to_string(kStep * (stamp - 100.0) / 0.1) + " 0 0 0 0 0 1\n";
+  }
+  folder.write("times.txt", times);
+  folder.write("truth.tum.txt", truth);
+  const Outcome outcome = odometry("scans -o result --ground-truth truth.tum.txt --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(summary()["accuracy"]["poses"], kScans);
+  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+}
+
+TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
+{
+  folder.write("short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  folder.write("empty/notes.txt", "no scan");
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "SCANS is required"},
+      {"scans", "--output is required"},
+      {"nowhere -o result", "nowhere: no such folder"},
+      {"empty -o result", "has no .pcd or .bin file"},
+      {"truth.txt -o result", "is no folder"},
+      {"scans -o truth.txt", "truth.txt"},
+      {"scans -o result --speed 9", "--speed"},
+      {"scans -o result --threads many", "--threads"},
+      {"scans -o result --threads 0", "threads is 0"},
+      {"scans -o result --max-scans -1", "--max-scans"},
+      {"scans -o result --from 8", "--from 8"},
+      {"scans -o result --sensor sonar", "sonar"},
+      {"scans -o result --elevations 1", "2"},
+      {"scans -o result --compensation some", "two-stage|loam|none"},
+      {"scans -o result --solver magic", "gauss-newton|ceres"},
+      {"scans -o result --vertical-correction 90", "vertical_correction is 90"},
+      {"scans -o result --edge-voxel-size 0", "edge_voxel_size is 0"},
+      {"scans -o result --ground-truth nowhere.txt", "nowhere.txt: cannot be read"},
+      {"scans -o result --ground-truth short.txt", "1 poses for 8 scans"},
+      {"scans -o result --ground-truth scans/0.bin", "0.bin: line 1"}};
+  for (const auto& [arguments, expected] : cases) {
+    const Outcome outcome = odometry(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << arguments << ": " << outcome.err;
+    EXPECT_NE(outcome.err.find(expected), std::string::npos) << arguments << ": " << outcome.err;
+  }
+}
+
+TEST_F(OdometryTool, HelpNamesEveryChoice)
+{
+  const Outcome outcome = odometry("--help");
+  EXPECT_EQ(outcome.status, 0);
+  for (const char* word : {"SCANS", "--output", "two-stage|loam|none", "gauss-newton|ceres", "voxel|kdtree", "vlp16",
+                           "--ground-truth", "--vertical-correction", "--threads", "--max-scans", "--from", "Exit"}) {
+    EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
+  }
+}
+
+TEST_F(OdometryTool, EveryChoiceRuns)
+{
+  for (const char* option :
+       {"--compensation none", "--compensation loam", "--solver ceres", "--search kdtree", "--weights printed",
+        "--weights inverted", "--weight-normalization sum-one", "--kernel none", "--smoothness vector-sum",
+        "--pose-instant start", "--threads 2", "--scan-lines elevation-clusters", "--timing none", "--quiet"}) {
+    const Outcome outcome = odometry(std::string("scans -o result --plot none --max-scans 3 ") + option);
+    EXPECT_EQ(outcome.status, 0) << option << ": " << outcome.err;
+    EXPECT_EQ(poses().size(), 3U) << option;
+  }
+}
+
+TEST_F(OdometryTool, AnInterruptedRunKeepsAllPosesSoFar)
+{
+  for (std::size_t i = kScans; i < 400; ++i) {
+    std::filesystem::create_symlink("0.bin", folder.path() / "scans" / (std::to_string(i) + ".bin"));
+  }
+  const pid_t tool = fork();
+  ASSERT_GE(tool, 0);
+  if (tool == 0) {
+    if (chdir(folder.path().c_str()) != 0) {
+      _exit(98);
+    }
+    execl(PCL_FLOAM_ODOMETRY, "pcl_floam_odometry", "scans", "-o", "result", "--plot", "none", "-q", nullptr);
+    _exit(99);
+  }
+  for (int wait = 0; wait < 500 && lines("poses.kitti.txt") < 3; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  kill(tool, SIGINT);
+  int status = 0;
+  ASSERT_EQ(waitpid(tool, &status, 0), tool);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 130);
+  EXPECT_GE(poses().size(), 3U);
+  EXPECT_LT(poses().size(), 400U);
+  EXPECT_EQ(poses().size(), summary()["scans"]["processed"]);
+  EXPECT_FALSE(loadMap(folder.path() / "result").empty());
+}
+
+TEST_F(OdometryTool, EvaluateAgreesWithTheOdometrysOwnFigures)
+{
+  ASSERT_EQ(odometry("scans -o result --ground-truth truth.txt --plot none").status, 0);
+  const Outcome outcome = evaluate("--estimate result/poses.kitti.txt --ground-truth truth.txt --json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto figures = nlohmann::json::parse(outcome.out);
+  const auto own = summary()["accuracy"];
+  EXPECT_NEAR(figures["ate"]["position_m"]["rms"].get<double>(), own["ate"]["position_m"]["rms"].get<double>(), 1e-6);
+  EXPECT_NEAR(figures["kitti"]["t_rel_percent"].get<double>(), own["kitti"]["t_rel_percent"].get<double>(), 1e-4);
+  EXPECT_FALSE(figures["kitti"]["standard_lengths"].get<bool>());
+}
+
+TEST_F(OdometryTool, EvaluateWritesTextAndJson)
+{
+  const Outcome outcome = evaluate("--estimate truth.txt --ground-truth truth.txt --lengths 1,2 -o evaluation");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("t_rel 0.000 %"), std::string::npos) << outcome.out;
+  EXPECT_EQ(contentOf(folder.path() / "evaluation" / "evaluation.txt"), outcome.out);
+  const auto json = nlohmann::json::parse(contentOf(folder.path() / "evaluation" / "evaluation.json"));
+  EXPECT_EQ(json["kitti"]["lengths"].size(), 2U);
+}
+
+TEST_F(OdometryTool, EvaluateRefusesWhatItCannotCompare)
+{
+  folder.write("short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  for (const char* arguments :
+       {"--estimate truth.txt", "--estimate truth.txt --ground-truth nowhere.txt",
+        "--estimate truth.txt --ground-truth short.txt", "--estimate truth.txt --ground-truth truth.txt --format tum",
+        "--estimate truth.txt --ground-truth truth.txt --lengths -5",
+        "--estimate truth.txt --ground-truth truth.txt --align scale"}) {
+    const Outcome outcome = evaluate(arguments);
+    EXPECT_EQ(outcome.status, 2) << arguments;
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << arguments << ": " << outcome.err;
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam
