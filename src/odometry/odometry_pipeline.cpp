@@ -39,7 +39,7 @@ void validate(const OdometryParameters& p)
 
 namespace {
 
-const double kReference = getenv("REF") ? atof(getenv("REF")) : 0.5;
+const double kReference = 0.5;
 /// Root mean square distance of the features: what a rotation error is multiplied with.
 double typicalRange(const FeatureSet& features)
 {

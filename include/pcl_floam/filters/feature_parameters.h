@@ -24,7 +24,7 @@ struct FeatureParameters {
   float min_range = 0.5F;       ///< m; nearer points are the robot itself. >= 0
   float max_range = 120.0F;     ///< m; > min_range
   /// m; an edge needs a smoothness of more than this, above the range noise. Reasonable: 0.02 to 0.1
-  float edge_threshold = 0.04F;
+  float edge_threshold = 0.1F;
   /// An edge needs a smoothness of more than this times the mean distance to its neighbours: 0 on a line,
   /// 0.7 at a right-angled corner, 1 at the end of a surface.
   float edge_bend = 0.35F;

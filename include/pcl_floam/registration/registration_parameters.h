@@ -38,14 +38,14 @@ struct RegistrationParameters {
   int edge_neighbors = 5;             ///< map points a line is fitted to; 3 to 20
   int plane_neighbors = 5;            ///< map points a plane is fitted to; 4 to 20
   double max_neighbor_distance = 1.0; ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
-  double line_ratio = 3.0;            ///< a line's largest eigenvalue must exceed this times the second; > 1
+  double line_ratio = 8.0;            ///< a line's largest eigenvalue must exceed this times the second; > 1
   double plane_ratio = 3.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
   double plane_spread = 0.02;         ///< and must exceed this times the largest: no plane through a line; [0, 1)
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
-  double kernel_scale = 0.05;
+  double kernel_scale = 0.1;
   int min_correspondences = 20;       ///< fewer give no pose; >= 6
   /// Directions with less information per correspondence than this are weak: the guess is kept along them.
   /// 1/6 is the average direction; [0, 0.1], 0 follows every direction.

@@ -1,0 +1,83 @@
+#include "lidar.h"
+
+#include <pcl_floam/filters/sensor_model.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace pcl_floam::simulator {
+
+namespace {
+
+struct Specification {
+  const char* name;
+  int columns;  ///< Velodyne: rate of the lasers' firing cycle over 10 Hz; Ouster: a usual mode
+  double min_range, max_range;
+  bool top_first;
+};
+
+constexpr Specification kSpecifications[] = {{"vlp16", 1800, 0.5, 100.0, false},
+                                             {"hdl32", 2170, 0.9, 80.0, false},
+                                             {"hdl64", 2083, 0.9, 120.0, false},
+                                             {"os64", 1024, 0.5, 100.0, true},
+                                             {"os128", 1024, 0.5, 100.0, true}};
+
+/// Echo strength, relative to a white surface head-on at the greatest range, that half of the pulses are seen at.
+constexpr double kThreshold = 0.1;
+
+/// Rough surfaces send something back even when grazed.
+constexpr double kRoughness = 0.15;
+
+}  // namespace
+
+double Lidar::azimuth(int column, HeadRotation rotation) const
+{
+  const double angle = M_PI - 2.0 * M_PI * column / columns;
+  return rotation == HeadRotation::clockwise || column == 0 ? angle : -angle;
+}
+
+bool Lidar::detects(const RayHit& hit, Random& random) const
+{
+  if (hit.distance < min_range) {
+    return false;
+  }
+  const double spread = max_range / hit.distance;
+  const double strength = hit.reflectivity * (kRoughness + (1.0 - kRoughness) * hit.incidence_cosine) * spread * spread;
+  const double ratio = strength / kThreshold;
+  const double fourth = ratio * ratio * ratio * ratio;
+  return random.chance(fourth / (1.0 + fourth));
+}
+
+Lidar lidar(std::string_view name)
+{
+  for (const Specification& entry : kSpecifications) {
+    if (name == entry.name) {
+      const SensorModel model = sensorModel(name);
+      Lidar result{entry.name,
+                   {model.elevations.begin(), model.elevations.end()},
+                   entry.columns,
+                   entry.min_range,
+                   entry.max_range};
+      if (entry.top_first) {
+        std::reverse(result.elevations.begin(), result.elevations.end());
+      }
+      return result;
+    }
+  }
+  throw std::invalid_argument("unknown sensor '" + std::string(name) + "'");
+}
+
+const std::vector<std::string>& lidarNames()
+{
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const Specification& entry : kSpecifications) {
+      list.emplace_back(entry.name);
+    }
+    return list;
+  }();
+  return names;
+}
+
+}  // namespace pcl_floam::simulator

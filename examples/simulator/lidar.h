@@ -1,0 +1,43 @@
+/// \file lidar.h
+/// The rotating lidars that can be simulated.
+#pragma once
+
+#include "random.h"
+#include "ray_scene.h"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_floam::simulator {
+
+/// Sense of the head's rotation seen from above.
+enum class HeadRotation { clockwise, counterclockwise };
+
+/// A lidar's geometry and reach.
+struct Lidar {
+  std::string name;
+  std::vector<double> elevations;  ///< rad, by ring: Velodyne numbers its rings from the lowest, Ouster from the top
+  int columns = 1800;              ///< firings in one turn at 10 Hz, each of all lasers at once
+  double min_range = 0.5;          ///< m
+  double max_range = 100.0;        ///< m
+
+  [[nodiscard]] int rings() const { return static_cast<int>(elevations.size()); }
+
+  /// Azimuth of a firing in rad, counter-clockwise from the sensor's x axis, in (-pi, pi]. A turn begins and ends at
+  /// the rear and looks forward at its middle.
+  [[nodiscard]] double azimuth(int column, HeadRotation rotation) const;
+
+  /// Whether the echo of a surface is strong enough to be seen: bright, near and head-on surfaces surely are, dark,
+  /// far and grazing ones with falling probability.
+  [[nodiscard]] bool detects(const RayHit& hit, Random& random) const;
+};
+
+/// vlp16, hdl32, hdl64, os64 or os128.
+/// \throws std::invalid_argument for an unknown name; the message lists the known ones.
+[[nodiscard]] Lidar lidar(std::string_view name);
+
+/// The names that \ref lidar knows.
+[[nodiscard]] const std::vector<std::string>& lidarNames();
+
+}  // namespace pcl_floam::simulator

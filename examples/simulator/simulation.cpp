@@ -1,0 +1,168 @@
+#include "simulation.h"
+
+#include "ray_scene.h"
+#include "world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+namespace pcl_floam::simulator {
+
+namespace {
+
+/// Streams of random numbers below this are the worlds' own; see Random.
+constexpr std::uint64_t kSweepPurpose = 1000000;
+
+void check(bool ok, const char* message)
+{
+  if (!ok) {
+    throw std::invalid_argument(message);
+  }
+}
+
+SimulationOptions checked(const SimulationOptions& options)
+{
+  check(options.range_noise >= 0.0 && options.range_noise < 10.0, "the range noise must be from 0 to 10 m");
+  check(options.dropout >= 0.0 && options.dropout <= 1.0, "the dropout must be a fraction from 0 to 1");
+  check(options.start >= 0.0, "the start must not be negative");
+  check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
+  return options;
+}
+
+/// Intensity as Velodyne gives it: 0 to 255.
+float intensityOf(const RayHit& hit, Random& random)
+{
+  const double brightness = hit.reflectivity * std::sqrt(static_cast<double>(hit.incidence_cosine));
+  return static_cast<float>(std::clamp(255.0 * brightness + 3.0 * random.normal(), 0.0, 255.0));
+}
+
+}  // namespace
+
+struct Simulation::WorldModel {
+  explicit WorldModel(World made) : world(std::move(made)), scene(world.still)
+  {
+    for (const MovingObject& object : world.moving) {
+      scene.addMoving(object.shape);
+    }
+  }
+
+  World world;
+  RayScene scene;
+};
+
+/// One column: all lasers at once.
+struct Simulation::Firing {
+  int column;
+  double azimuth;   // rad
+  double fraction;  // of the sweep, in [0, 1)
+  double time;      // s after the sweep's start
+  SE3 world_T_sensor;
+  SE3 end_T_sensor;
+};
+
+Simulation::Simulation(const SimulationOptions& options) : options_(checked(options))
+{
+  world_ = std::make_unique<WorldModel>(makeWorld(options_.world, {options_.seed, options_.smooth}));
+  lidar_ = lidar(options_.sensor.empty() ? world_->world.default_sensor : options_.sensor);
+  // The lasers fire at a fixed rate: a faster head has fewer columns.
+  lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
+  const double length = motion().duration() - options_.start;
+  check(length * options_.rate >= 1.0, "the start lies beyond the end of the world's path");
+  size_ = static_cast<std::size_t>(std::floor(length * options_.rate + 1e-9));
+}
+
+Simulation::~Simulation() = default;
+
+const MotionSpline& Simulation::motion() const
+{
+  return world_->world.sensor_motion;
+}
+
+double Simulation::accelerationBound() const
+{
+  return world_->world.acceleration;
+}
+
+SE3 Simulation::worldTSensor(double t) const
+{
+  return motion().pose(options_.start + t);
+}
+
+void Simulation::placeMovingObjects(double start_time, double end_time)
+{
+  const std::vector<MovingObject>& objects = world_->world.moving;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const MotionSpline& path = objects[i].motion;
+    world_->scene.place(i, path.pose(options_.start + start_time), path.pose(options_.start + end_time));
+  }
+  world_->scene.commit();
+}
+
+void Simulation::fire(const Firing& firing, Random& random, Sweep& sweep) const
+{
+  const Eigen::Vector3f origin = firing.world_T_sensor.translation.cast<float>();
+  for (int ring = 0; ring < lidar_.rings(); ++ring) {
+    const double elevation = lidar_.elevations[static_cast<std::size_t>(ring)];
+    const Eigen::Vector3d beam(std::cos(elevation) * std::cos(firing.azimuth),
+                               std::cos(elevation) * std::sin(firing.azimuth), std::sin(elevation));
+    const Eigen::Vector3f direction = (firing.world_T_sensor.rotation * beam).cast<float>();
+    const RayHit hit = world_->scene.cast(origin, direction, static_cast<float>(lidar_.max_range),
+                                          static_cast<float>(firing.fraction));
+    const bool seen = hit.exists() && lidar_.detects(hit, random) && !random.chance(options_.dropout);
+    if (!seen && !options_.organized) {
+      continue;
+    }
+    const double exact = seen ? hit.distance : std::numeric_limits<double>::quiet_NaN();
+    const double range = exact + options_.range_noise * random.normal();
+    const Eigen::Vector3f point = (range * beam).cast<float>();
+    const float intensity = seen ? intensityOf(hit, random) : 0.0F;
+    const std::size_t place = options_.organized ? static_cast<std::size_t>(ring * lidar_.columns + firing.column)
+                                                 : sweep.cloud.points.size();
+    if (!options_.organized) {
+      sweep.cloud.points.emplace_back();
+      sweep.exact_at_end.emplace_back();
+      sweep.moving.emplace_back();
+    }
+    sweep.cloud.points[place] = PointXYZIRT(point.x(), point.y(), point.z(), intensity,
+                                            static_cast<std::uint16_t>(ring), static_cast<float>(firing.time));
+    sweep.exact_at_end[place] = (firing.end_T_sensor * (exact * beam)).cast<float>();
+    sweep.moving[place] = seen && hit.moving ? 1 : 0;
+  }
+}
+
+Sweep Simulation::sweep(std::size_t number)
+{
+  const double duration = 1.0 / options_.rate;
+  Sweep sweep;
+  sweep.number = number;
+  sweep.start_time = static_cast<double>(number) / options_.rate;
+  sweep.end_time = static_cast<double>(number + 1) / options_.rate;
+  sweep.world_T_start = worldTSensor(sweep.start_time);
+  sweep.world_T_middle = worldTSensor(sweep.start_time + 0.5 * duration);
+  sweep.world_T_end = worldTSensor(sweep.end_time);
+  placeMovingObjects(sweep.start_time, sweep.end_time);
+  const auto all = static_cast<std::size_t>(lidar_.rings() * lidar_.columns);
+  sweep.cloud.points.reserve(all);
+  if (options_.organized) {
+    sweep.cloud.points.resize(all);
+    sweep.exact_at_end.resize(all);
+    sweep.moving.resize(all);
+  }
+  Random random(options_.seed, kSweepPurpose + number);
+  const SE3 end_T_world = sweep.world_T_end.inverse();
+  for (int column = 0; column < lidar_.columns; ++column) {
+    const double fraction = static_cast<double>(column) / lidar_.columns;
+    const SE3 pose = worldTSensor(sweep.start_time + fraction * duration);
+    fire({column, lidar_.azimuth(column, options_.rotation), fraction, fraction * duration, pose, end_T_world * pose},
+         random, sweep);
+  }
+  sweep.cloud.height = options_.organized ? static_cast<std::uint32_t>(lidar_.rings()) : 1;
+  sweep.cloud.width = static_cast<std::uint32_t>(sweep.cloud.points.size()) / sweep.cloud.height;
+  sweep.cloud.is_dense = !options_.organized;
+  return sweep;
+}
+
+}  // namespace pcl_floam::simulator

@@ -1,0 +1,66 @@
+/// \file world.h
+/// The simulated places: what stands, what moves, and the path through them.
+#pragma once
+
+#include "drive.h"
+#include "motion_spline.h"
+#include "triangle_mesh.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pcl_floam::simulator {
+
+/// Something that moves through a world.
+struct MovingObject {
+  TriangleMesh shape;  ///< in the object's frame: x forward, origin on the ground
+  MotionSpline motion;
+  double clearance = 1.0;  ///< m: nearer than this to the sensor it would be a collision
+};
+
+/// A place in which a sensor moves. The world's frame has z up; metres, radians.
+struct World {
+  TriangleMesh still;
+  std::vector<MovingObject> moving;
+  MotionSpline sensor_motion = MotionSpline(BodyState::Zero());  ///< world_T_sensor in time
+  std::string default_sensor = "vlp16";
+  double acceleration = 0.0;  ///< m/s^2, bound that the sensor's motion keeps to
+};
+
+/// What the user can choose about a world.
+struct WorldOptions {
+  std::uint64_t seed = 1;
+  bool smooth = false;  ///< corridor only: no doors, nothing that could tell how far one has come
+};
+
+/// Racks with posts and uneven loads, pillars, machines, walking workers; 330 m at up to 2 m/s.
+[[nodiscard]] World makeWarehouse(const WorldOptions& options);
+
+/// A motion-capture room of 10 x 8 m with furniture and a walking person; 60 s at walking pace.
+[[nodiscard]] World makeRoom(const WorldOptions& options);
+
+/// Streets with facades, trees, poles, parked and moving cars, slopes and crossings; a loop of more than 1 km.
+[[nodiscard]] World makeUrban(const WorldOptions& options);
+
+/// A motorway with guard rails, banks, a few signs and bridges, traffic; more than 1 km at 25 m/s.
+[[nodiscard]] World makeHighway(const WorldOptions& options);
+
+/// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
+[[nodiscard]] World makeCorridor(const WorldOptions& options);
+
+/// An office room; the sensor is swung by hand at up to 120 degrees a second about all axes.
+[[nodiscard]] World makeHandheld(const WorldOptions& options);
+
+/// A world by name.
+/// \throws std::invalid_argument for an unknown name
+[[nodiscard]] World makeWorld(std::string_view name, const WorldOptions& options);
+
+/// The names that \ref makeWorld knows.
+[[nodiscard]] const std::vector<std::string>& worldNames();
+
+/// Takes out the moving objects that would run into the sensor.
+void removeCollisions(World& world);
+
+}  // namespace pcl_floam::simulator
