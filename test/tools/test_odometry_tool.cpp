@@ -216,6 +216,21 @@ TEST_F(OdometryTool, EveryChoiceRuns)
   }
 }
 
+TEST_F(OdometryTool, AFullDiskIsToldOnceAndTheRestIsWritten)
+{
+  if (!std::filesystem::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full here";
+  }
+  std::filesystem::create_directory(folder.path() / "result");
+  std::filesystem::create_symlink("/dev/full", folder.path() / "result" / "poses.tum.txt");
+  const Outcome outcome = odometry("scans -o result --plot none --quiet");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("poses.tum.txt: cannot be written"), std::string::npos) << outcome.err;
+  EXPECT_EQ(summary()["scans"]["processed"], 1);
+  EXPECT_FALSE(loadMap(folder.path() / "result").empty());
+}
+
 TEST_F(OdometryTool, AnInterruptedRunKeepsAllPosesSoFar)
 {
   for (std::size_t i = kScans; i < 400; ++i) {

@@ -15,7 +15,7 @@ PathLine figureOfEight(Random& random, const Eigen::Vector2d& reach, int rounds)
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= 48 * rounds; ++i) {
     const double angle = 2.0 * M_PI * i / 48.0;
-    points.emplace_back(reach.x() * std::cos(angle + shift), reach.y() * std::sin(2.0 * angle + shift));
+    points.emplace_back(reach.x() * std::cos(angle + shift), reach.y() * std::sin(2.0 * (angle + shift)));
   }
   return {points, 0.3};
 }
