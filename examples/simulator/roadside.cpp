@@ -48,10 +48,10 @@ Relief facade(Random& random, const FacadeStyle& style)
   const std::size_t height = rows.size() - 1;
   for (std::size_t c = 0; c + 1 < columns.size(); ++c) {
     for (std::size_t r = 0; r < height; ++r) {
-      const bool window = c % 5 == 2 && r % 2 == 0 && r > 0 && r + 1 < height - 1 + 1 && r < height - 1;
+      const bool window = c % 5 == 2 && r % 2 == 0 && r > 0 && r + 1 < height;
       const bool pilaster = c % 5 == 0 || c % 5 == 4;
       if (window) {
-        relief.cell(r - 1 + 1, c) = {-style.recess, 0.25};
+        relief.cell(r, c) = {-style.recess, 0.25};
       } else if (pilaster) {
         relief.cell(r, c).depth = style.pilaster;
       }

@@ -2,7 +2,9 @@
 #include "../roadside.h"
 #include "../world.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_floam::simulator {
 
@@ -17,12 +19,23 @@ constexpr double kInnerLane = -3.5;      // m
 /// Long bends to both sides.
 PathLine road(Random& random)
 {
-  const SmoothNoise bend(random, 45.0, 1.0 / 1600.0, 1.0 / 700.0, 3);
+  const SmoothNoise bend(random, 30.0, 1.0 / 1600.0, 1.0 / 700.0, 3);
   std::vector<Eigen::Vector2d> points;
   for (double x = 0.0; x <= 1700.0; x += 10.0) {
     points.emplace_back(x, bend(x) - bend(0.0));
   }
   return {points, 15.0};
+}
+
+/// Least and greatest y of a line, m.
+std::pair<double, double> extentAcross(const PathLine& line)
+{
+  std::pair<double, double> extent(line.at(0.0).y(), line.at(0.0).y());
+  for (double station = 0.0; station < line.length(); station += 10.0) {
+    const double y = line.at(station).y();
+    extent = {std::min(extent.first, y), std::max(extent.second, y)};
+  }
+  return extent;
 }
 
 PathLine reversed(const PathLine& line)
@@ -92,29 +105,30 @@ void addVehicle(World& world, Random& random, const PathLine& line, const Terrai
   world.moving.push_back(vehicle);
 }
 
-void addTraffic(World& world, Random& random, const PathLine& line, const Terrain& terrain)
+/// Steady driving: no bend of the road is tight enough to slow down for.
+DriveStyle cruising(double speed, double left, double first_station)
 {
   DriveStyle style;
+  style.speed = style.start_speed = style.end_speed = speed;
+  style.side_acceleration = 3.5;
+  style.left = left;
+  style.first_station = first_station;
+  return style;
+}
+
+void addTraffic(World& world, Random& random, const PathLine& line, const Terrain& terrain)
+{
   for (double station = 20.0; station < 500.0; station += random.uniform(45.0, 90.0)) {
-    style.first_station = station;
-    style.left = kInnerLane;
-    style.speed = random.uniform(27.0, 30.0);
-    style.start_speed = style.end_speed = style.speed;
-    addVehicle(world, random, line, terrain, style);
+    addVehicle(world, random, line, terrain, cruising(random.uniform(27.0, 30.0), kInnerLane, station));
   }
   for (const double ahead : {38.0, 95.0, -30.0}) {
-    style.first_station = kFirstStation + ahead;
-    style.left = kOuterLane;
-    style.speed = style.start_speed = style.end_speed = kSpeed;
-    addVehicle(world, random, line, terrain, style);
+    addVehicle(world, random, line, terrain, cruising(kSpeed, kOuterLane, kFirstStation + ahead));
   }
   const PathLine back = reversed(line);
   for (int i = 0; i < 24; ++i) {
-    style.left = i % 2 == 0 ? kInnerLane : kOuterLane;
-    style.first_station = 55.0 * i + random.uniform(0.0, 40.0);
-    style.speed = i % 2 == 0 ? 30.0 : 25.0;
-    style.start_speed = style.end_speed = style.speed;
-    addVehicle(world, random, back, terrain, style);
+    const bool inner = i % 2 == 0;
+    const double station = 55.0 * i + random.uniform(0.0, 40.0);
+    addVehicle(world, random, back, terrain, cruising(inner ? 30.0 : 25.0, inner ? kInnerLane : kOuterLane, station));
   }
 }
 
@@ -129,21 +143,11 @@ World makeHighway(const WorldOptions& options)
   terrain.addWaves(random, 1.2, 350.0, 900.0);
   terrain.addWaves(random, 0.006, 6.0, 25.0);
   const PathLine line = road(random);
-  const auto [low, high] = [&line] {
-    Eigen::Vector2d bounds(1e9, -1e9);
-    for (double station = 0.0; station < line.length(); station += 10.0) {
-      const double y = line.at(station).y();
-      bounds = {std::min(bounds.x(), y), std::max(bounds.y(), y)};
-    }
-    return std::make_pair(bounds.x(), bounds.y());
-  }();
+  const auto [low, high] = extentAcross(line);
   addGround(world.still, terrain, {-150.0, 1850.0, low - 90.0, high + 90.0, 2.0}, [](double, double) { return 0.2; });
   addLongStructures(world.still, random, line, terrain);
   addLandmarks(world.still, random, line, terrain);
-  DriveStyle style;
-  style.speed = style.start_speed = style.end_speed = kSpeed;
-  style.left = kOuterLane;
-  style.first_station = kFirstStation;
+  DriveStyle style = cruising(kSpeed, kOuterLane, kFirstStation);
   style.last_station = kLastStation;
   world.sensor_motion = drive(line, style, {1.9, 2.6, 0.003, 0.008}, terrain, random);
   world.acceleration = 3.0;

@@ -1,15 +1,16 @@
+#include "../objects.h"
 #include "../world.h"
 #include "city_block.h"
 
-#include "../objects.h"
-
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kLane = -2.2;  // m from the middle of the street: traffic keeps to the right
+constexpr double kSpeed = 12.0;  // m/s
+constexpr double kLane = -2.2;   // m from the middle of the street: traffic keeps to the right
 
 /// The crossings: a grid that is nowhere quite square.
 using Crossings = std::array<std::array<Eigen::Vector2d, 5>, 5>;
@@ -63,7 +64,7 @@ DriveStyle cityDriving(double speed)
 void addTraffic(World& world, Random& random, const Crossings& at, const PathLine& way, const Terrain& terrain)
 {
   for (const double ahead : {22.0, 48.0}) {
-    DriveStyle style = cityDriving(11.0);
+    DriveStyle style = cityDriving(kSpeed);
     style.first_station = ahead;
     addCarOn(world, random, way, terrain, style);
   }
@@ -131,10 +132,10 @@ World makeUrban(const WorldOptions& options)
   }
   double length = 0.0;
   const PathLine way = loop(at, false, length);
-  DriveStyle style = cityDriving(12.0);
+  DriveStyle style = cityDriving(kSpeed);
   style.last_station = length;
   world.sensor_motion = drive(way, style, {1.8, 2.5, 0.005, 0.006}, terrain, random);
-  world.acceleration = 4.0;
+  world.acceleration = 5.0;
   addTraffic(world, random, at, way, terrain);
   addPedestrians(world, random, blocks, terrain, world.sensor_motion.duration());
   return world;
