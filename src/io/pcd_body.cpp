@@ -1,5 +1,5 @@
-// PCL's own PCDReader is not used: it prints to the console, gives neither place nor reason of a failure, turns words
-// that are no numbers into zeros, and believes sizes in compressed files that lead it beyond its buffers.
+// PCL's own PCDReader is not used: it prints to the console, tells neither place nor reason of a failure, turns words
+// that are no numbers into zeros, and accepts compressed files with less data than their header promises.
 
 #include "io/pcd_body.h"
 

@@ -1,0 +1,153 @@
+#include "support/random_motion.h"
+#include "support/temporary_folder.h"
+
+#include "map_sketch.h"
+#include "plot_frame.h"
+#include "pose_pairs.h"
+#include "stage_times.h"
+
+#include <pcl_floam/io/scan_source.h>
+
+#include <gtest/gtest.h>
+
+#include <iomanip>
+#include <sstream>
+
+namespace pcl_floam::tools {
+namespace {
+
+using test::randomTwist;
+using test::TemporaryFolder;
+
+void expectSame(const SE3& a, const SE3& b, double tolerance = 1e-9)
+{
+  EXPECT_LT((a.inverse() * b).translation.norm(), tolerance);
+  EXPECT_LT(rotationAngle((a.inverse() * b).rotation), tolerance);
+}
+
+/// Poses 0.5 s apart of a sensor with constant twist.
+Trajectory constantMotion(const Vector6& twist_per_second)
+{
+  Trajectory trajectory;
+  for (int i = 0; i < 5; ++i) {
+    trajectory.push_back({10.0 + 0.5 * i, exp(0.5 * i * twist_per_second)});
+  }
+  return trajectory;
+}
+
+TEST(PoseAt, InterpolatesAConstantMotionExactly)
+{
+  std::mt19937 random(2);
+  const Vector6 twist = randomTwist(random, 5.0, 1.0);
+  const Trajectory trajectory = constantMotion(twist);
+  for (double time = 0.0; time <= 2.0; time += 0.125) {
+    const auto pose = poseAt(trajectory, 10.0 + time);
+    ASSERT_TRUE(pose.has_value()) << time;
+    expectSame(*pose, exp(time * twist));
+  }
+}
+
+TEST(PoseAt, GuessesNothingOutsideOrInGaps)
+{
+  Trajectory trajectory = constantMotion(Vector6::Zero());
+  EXPECT_FALSE(poseAt(trajectory, 9.999).has_value());
+  EXPECT_FALSE(poseAt(trajectory, 12.001).has_value());
+  EXPECT_FALSE(poseAt({}, 0.0).has_value());
+  trajectory.push_back({20.0, SE3()});
+  EXPECT_FALSE(poseAt(trajectory, 15.0).has_value());
+  EXPECT_TRUE(poseAt(trajectory, 20.0).has_value());
+}
+
+TEST(RequireRisingStamps, RefusesTimesThatStandStill)
+{
+  Trajectory trajectory = constantMotion(Vector6::Zero());
+  EXPECT_NO_THROW(requireRisingStamps(trajectory, "file"));
+  trajectory[2].stamp = trajectory[1].stamp;
+  EXPECT_THROW(requireRisingStamps(trajectory, "file"), FileError);
+}
+
+TEST(CameraToLidar, GivesBackTheLidarsOwnPath)
+{
+  std::mt19937 random(4);
+  const SE3 camera_T_lidar = exp(randomTwist(random, 0.5, 1.5));
+  std::ostringstream calibration;
+  calibration << std::setprecision(12) << "P0: 1 0 0 0 0 1 0 0 0 0 1 0\nTr:";
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      calibration << ' ' << camera_T_lidar.matrix()(row, column);
+    }
+  }
+  const TemporaryFolder folder;
+  const auto file = folder.write("calib.txt", calibration.str() + "\n");
+  const Trajectory lidar = constantMotion(randomTwist(random, 5.0, 1.0));
+  Trajectory poses = lidar;
+  for (StampedPose& pose : poses) {
+    pose.world_T_sensor = camera_T_lidar * pose.world_T_sensor * camera_T_lidar.inverse();
+  }
+  cameraToLidar(file, poses);
+  for (std::size_t i = 0; i < lidar.size(); ++i) {
+    expectSame(poses[i].world_T_sensor, lidar[i].world_T_sensor, 1e-8);
+  }
+}
+
+TEST(CameraToLidar, NeedsTheLineTr)
+{
+  const TemporaryFolder folder;
+  Trajectory poses(1);
+  EXPECT_THROW(cameraToLidar(folder.write("calib.txt", "P0: 1 0 0\n"), poses), FileError);
+  EXPECT_THROW(cameraToLidar(folder.write("calib.txt", "Tr: 1 0 0\n"), poses), FileError);
+  EXPECT_THROW(cameraToLidar(folder.path() / "missing.txt", poses), FileError);
+}
+
+TEST(TimeStatistics, AreThoseOfTheSamples)
+{
+  std::vector<StageTimes> times(101);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    times[(i * 37) % 101].total = static_cast<double>(i);
+  }
+  const TimeStatistics statistics = timeStatistics(times, kStages.back());
+  EXPECT_DOUBLE_EQ(statistics.mean, 50.0);
+  EXPECT_DOUBLE_EQ(statistics.median, 50.0);
+  EXPECT_DOUBLE_EQ(statistics.p95, 95.0);
+  EXPECT_DOUBLE_EQ(statistics.max, 100.0);
+  EXPECT_DOUBLE_EQ(timeStatistics({}, kStages.back()).max, 0.0);
+}
+
+TEST(UprightCells, AreWallsButNotFloorsOrCeilings)
+{
+  std::vector<Eigen::Vector3d> points;
+  for (double x = 0.05; x < 10.0; x += 0.1) {
+    for (double y = 0.05; y < 10.0; y += 0.1) {
+      points.emplace_back(x, y, 0.1);
+      points.emplace_back(x, y, 3.1);
+    }
+    for (double z = 0.1; z < 3.0; z += 0.1) {
+      points.emplace_back(x, 5.2, z);
+    }
+  }
+  const GroundArea area{Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(10.0, 10.0)};
+  const auto cells = uprightCells(points, area, 0.5);
+  EXPECT_EQ(cells.size(), 20U);
+  for (const Eigen::Vector2d& cell : cells) {
+    EXPECT_NEAR(cell.y(), 5.25, 1e-9);
+  }
+}
+
+TEST(PlotFrame, BothAxesOfTheTopViewHaveOneScale)
+{
+  for (const Eigen::Vector3d& end : {Eigen::Vector3d(100.0, 3.0, 0.0), Eigen::Vector3d(2.0, 400.0, 0.0),
+                                     Eigen::Vector3d(0.0, 0.0, 9.0), Eigen::Vector3d(70.0, -70.0, 0.0)}) {
+    const GroundArea path = areaAround({Eigen::Vector3d::Zero(), end});
+    const PlotLayout layout = layoutFor(path, true);
+    const GroundArea area = fittedTo(path, layout);
+    const Panel& panel = layout.top_view;
+    const Eigen::Vector2d extent = area.highest - area.lowest;
+    EXPECT_NEAR(extent.x() / ((panel.right - panel.left) * layout.width),
+                extent.y() / ((panel.top - panel.bottom) * layout.height), 1e-9);
+    EXPECT_TRUE(area.contains(Eigen::Vector3d::Zero()));
+    EXPECT_TRUE(area.contains(end));
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam::tools
