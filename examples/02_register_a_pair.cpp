@@ -30,7 +30,7 @@ int main(int argc, char** argv)
             << report.edge_correspondences << " edge and " << report.plane_correspondences
             << " plane correspondences, residual " << report.residual_rms << " m\n"
             << registration.getFinalTransformation() << '\n'
-            << "standard deviations (x y z in m, then in rad): "
-            << report.covariance.diagonal().cwiseSqrt().transpose() << '\n';
+            << "standard deviations (x y z in m, then in rad): " << report.covariance.diagonal().cwiseSqrt().transpose()
+            << '\n';
   return registration.hasConverged() ? 0 : 1;
 }

@@ -17,9 +17,9 @@ pcl::PointCloud<pcl_floam::PointXYZIRT> makeScan()
     for (int ring = 0; ring < 16; ++ring) {
       const double slope = std::tan((-15.0 + 2.0 * ring) * M_PI / 180.0);
       const double distance = slope < 0.0 ? std::min(wall, -1.0 / slope) : wall;  // the floor is 1 m below
-      scan.push_back({static_cast<float>(distance * std::cos(azimuth)), static_cast<float>(distance * std::sin(azimuth)),
-                      static_cast<float>(distance * slope), 0.0F, static_cast<std::uint16_t>(ring),
-                      static_cast<float>(0.1 * column / 1800.0)});
+      scan.push_back({static_cast<float>(distance * std::cos(azimuth)),
+                      static_cast<float>(distance * std::sin(azimuth)), static_cast<float>(distance * slope), 0.0F,
+                      static_cast<std::uint16_t>(ring), static_cast<float>(0.1 * column / 1800.0)});
     }
   }
   return scan;

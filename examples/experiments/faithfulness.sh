@@ -25,8 +25,8 @@ for entry in "${simulated[@]}"; do
     "$bin/pcl_floam_simulate" "$world" --sensor "$sensor" --seed "$seed" --scans "$scans" --output "$work/$name" >/dev/null
 done
 
-value() { # the number of KEY after the first SECTION of a summary
-  sed -n "/\"$2\"/,\$p" "$1" | sed -n "s/.*\"$3\": *\([-0-9.e+]*\).*/\1/p" | head -n 1
+value() { # the number of KEY in SECTION, in PART, of a summary
+  sed -n "/\"$2\"/,\$p" "$1" | sed -n "/\"$3\"/,\$p" | sed -n "s/.*\"$4\": *\([-0-9.e+]*\).*/\1/p" | head -n 1
 }
 
 cell() { # data set, options
@@ -37,7 +37,8 @@ cell() { # data set, options
     arguments=("$data/scans" --ground-truth "$data/poses_end.txt")
   fi
   if timeout 300 "$bin/pcl_floam_odometry" "${arguments[@]}" --output "$out" --plot none --quiet "${@:2}" 2>/dev/null; then
-    awk -v ate="$(value "$out/summary.json" ate rms)" -v ms="$(value "$out/summary.json" total_ms median)" \
+    awk -v ate="$(value "$out/summary.json" ate position_m rms)" \
+      -v ms="$(value "$out/summary.json" milliseconds total median)" \
       'BEGIN { printf "%.1f / %.0f", 100 * ate, ms }'
   else
     printf 'lost'

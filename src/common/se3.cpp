@@ -1,8 +1,8 @@
 #include <pcl_floam/common/se3.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <Eigen/SVD>
 
 namespace pcl_floam {
 

@@ -87,8 +87,8 @@ void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std:
 class LineSelector {
 public:
   LineSelector(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable,
-               LineScratch& scratch, FeatureSet& features)
+               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable, LineScratch& scratch,
+               FeatureSet& features)
       : cloud_(cloud),
         lines_(lines),
         timing_(timing),
@@ -177,8 +177,7 @@ private:
   [[nodiscard]] bool isEdge(int n) const
   {
     return sigma(n) > parameters_.edge_threshold && line_.unfit[static_cast<std::size_t>(n)] == kFit &&
-           sigma(n) > parameters_.edge_bend *
-                          meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+           sigma(n) > parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
   }
 
   void takeNeighborhood(int n)

@@ -16,8 +16,7 @@ float elevationOf(const CloudView& cloud, std::size_t i)
 /// Assigns each point to the nearest of the rising \p elevations, if it is nearer than \p tolerance times the
 /// distance to that beam's neighbours.
 /// \return fraction of the measurable points that were assigned
-float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance,
-                       ScanLines& lines)
+float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance, ScanLines& lines)
 {
   std::vector<std::int32_t> line_of_point(cloud.size, -1);
   std::size_t measurable = 0;

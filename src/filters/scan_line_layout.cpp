@@ -33,8 +33,8 @@ float meanElevationStep(const CloudView& cloud, std::size_t step, std::size_t li
       const std::size_t a = line * line_step + n * step;
       const std::size_t b = a + step;
       if (isMeasurable(cloud, a) && isMeasurable(cloud, b)) {
-        sum += std::abs(cloud.z(a) / std::hypot(cloud.x(a), cloud.y(a)) -
-                        cloud.z(b) / std::hypot(cloud.x(b), cloud.y(b)));
+        sum +=
+            std::abs(cloud.z(a) / std::hypot(cloud.x(a), cloud.y(a)) - cloud.z(b) / std::hypot(cloud.x(b), cloud.y(b)));
         ++count;
       }
     }
@@ -131,8 +131,8 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
     return false;
   }
   // A scan line keeps its elevation; the other direction of the grid does not.
-  lines.transposed = meanElevationStep(cloud, 1, cloud.width, cloud.width) >
-                     meanElevationStep(cloud, cloud.width, cloud.height, 1);
+  lines.transposed =
+      meanElevationStep(cloud, 1, cloud.width, cloud.width) > meanElevationStep(cloud, cloud.width, cloud.height, 1);
   const std::uint32_t line_count = lines.transposed ? cloud.width : cloud.height;
   if (line_count > kMaxScanLines) {
     return false;

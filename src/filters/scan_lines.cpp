@@ -86,8 +86,8 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     }
     start_over();
   }
-  lines.failure = source == ScanLineSource::automatic ? ScanLineFailure::no_line_structure
-                                                      : ScanLineFailure::source_not_available;
+  lines.failure =
+      source == ScanLineSource::automatic ? ScanLineFailure::no_line_structure : ScanLineFailure::source_not_available;
 }
 
 }  // namespace pcl_floam

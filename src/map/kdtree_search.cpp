@@ -9,8 +9,9 @@ namespace pcl_floam {
 using Tree = flann::KDTreeSingleIndex<flann::L2_3D<float>>;
 
 struct KdTreeSearch::Index {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the single-precision coordinates: far from the world's own, near the points
-  std::vector<float> coordinates;                    ///< x y z of each point relative to the origin
+  Eigen::Vector3d origin =
+      Eigen::Vector3d::Zero();     ///< of the single-precision coordinates: far from the world's own, near the points
+  std::vector<float> coordinates;  ///< x y z of each point relative to the origin
   std::unique_ptr<Tree> tree;
 };
 
@@ -34,9 +35,9 @@ KdTreeSearch::KdTreeSearch(const std::vector<Eigen::Vector3d>& points) : index_(
       index_->coordinates.insert(index_->coordinates.end(), relative.data(), relative.data() + 3);
     }
   }
-  index_->tree = std::make_unique<Tree>(
-      flann::Matrix<float>(index_->coordinates.data(), index_->coordinates.size() / 3, 3),
-      flann::KDTreeSingleIndexParams(15));
+  index_->tree =
+      std::make_unique<Tree>(flann::Matrix<float>(index_->coordinates.data(), index_->coordinates.size() / 3, 3),
+                             flann::KDTreeSingleIndexParams(15));
   index_->tree->buildIndex();
 }
 
@@ -54,8 +55,8 @@ void KdTreeSearch::nearest(const Eigen::Vector3d& query, int k, double radius, N
   std::array<float, kMaxNeighbors> distance2;
   flann::Matrix<std::size_t> indices(index.data(), 1, wanted);
   flann::Matrix<float> distances(distance2.data(), 1, wanted);
-  const int found = index_->tree->knnSearch(flann::Matrix<float>(relative.data(), 1, 3), indices, distances, wanted,
-                                            kExact);
+  const int found =
+      index_->tree->knnSearch(flann::Matrix<float>(relative.data(), 1, 3), indices, distances, wanted, kExact);
   const auto limit = static_cast<float>(radius * radius);
   for (std::size_t i = 0; i < static_cast<std::size_t>(found) && distance2[i] <= limit; ++i) {
     const Eigen::Vector3f point = Eigen::Map<const Eigen::Vector3f>(&index_->coordinates[3 * index[i]]);

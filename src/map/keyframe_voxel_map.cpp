@@ -131,8 +131,8 @@ pcl::PointCloud<pcl::PointXYZ>::Ptr KeyframeVoxelMap::cloud(FeatureKind kind) co
 {
   auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
   for (const Eigen::Vector3d& point : points(kind)) {
-    cloud->push_back(pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()),
-                                   static_cast<float>(point.z())));
+    cloud->push_back(
+        pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())));
   }
   return cloud;
 }

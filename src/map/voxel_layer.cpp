@@ -174,8 +174,7 @@ void VoxelLayer::visitBlocks(const Eigen::Vector3d& query, double radius, const 
   const BlockQuery center = blockQuery(query);
   const auto size = static_cast<float>(block_size_);
   const auto cornerOf = [&](double dx, double dy, double dz) {
-    return Eigen::Vector3f(static_cast<float>(dx) * size, static_cast<float>(dy) * size,
-                           static_cast<float>(dz) * size);
+    return Eigen::Vector3f(static_cast<float>(dx) * size, static_cast<float>(dy) * size, static_cast<float>(dz) * size);
   };
   const auto isNear = [&](const Eigen::Vector3f& corner) {
     return squaredGap(center.offset.x(), corner.x(), size) + squaredGap(center.offset.y(), corner.y(), size) +

@@ -65,8 +65,8 @@ void ConstantVelocity::set(const Vector6& twist)
 
 void PredictionError::observe(const SE3& predicted_T_estimated, double typical_range)
 {
-  const double displacement = predicted_T_estimated.translation.norm() +
-                              rotationAngle(predicted_T_estimated.rotation) * typical_range;
+  const double displacement =
+      predicted_T_estimated.translation.norm() + rotationAngle(predicted_T_estimated.rotation) * typical_range;
   constexpr double kForgetting = 0.8;  // about five scans of memory
   squared_ = kForgetting * squared_ + (1.0 - kForgetting) * displacement * displacement;
 }

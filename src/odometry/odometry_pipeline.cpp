@@ -62,11 +62,11 @@ struct OdometryPipeline::Impl {
   ScanClock clock;
   ConstantVelocity velocity;
   PredictionError prediction_error;
-  SE3 initial_pose;        ///< of the first scan, at the instant of the parameters
-  SE3 world_T_last;        ///< last scan, tracked or predicted
-  SE3 world_T_tracked;     ///< last tracked scan
-  SE3 world_T_keyframe;    ///< last keyframe
-  double periods = 1.0;    ///< from the last scan to this one
+  SE3 initial_pose;      ///< of the first scan, at the instant of the parameters
+  SE3 world_T_last;      ///< last scan, tracked or predicted
+  SE3 world_T_tracked;   ///< last tracked scan
+  SE3 world_T_keyframe;  ///< last keyframe
+  double periods = 1.0;  ///< from the last scan to this one
   double periods_since_tracked = 0.0;
   double sweep_fraction = 1.0;  ///< duration of the sweep in periods
   bool started = false;
@@ -284,8 +284,7 @@ struct OdometryPipeline::Impl {
   const OdometryReport& finish(TrackingState state)
   {
     report.state = state;
-    report.world_T_sensor =
-        started ? world_T_last * instantToReference(velocity.twist()).inverse() : initial_pose;
+    report.world_T_sensor = started ? world_T_last * instantToReference(velocity.twist()).inverse() : initial_pose;
     report.milliseconds.total = watch.total();
     return report;
   }

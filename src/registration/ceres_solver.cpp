@@ -93,9 +93,8 @@ void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, co
 {
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
-      ceres_problem.AddResidualBlock(
-          new PerturbationCost<Factor>(c.factor, local_T_sensor * c.point, c.response),
-          new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP), delta);
+      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c.factor, local_T_sensor * c.point, c.response),
+                                     new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP), delta);
     }
   }
 }

@@ -23,10 +23,10 @@ public:
         problem_{target, parameters, run.guess.translation, run.threads, run.response_slope, run.reference},
         local_T_sensor_(run.guess.rotation, Eigen::Vector3d::Zero()),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
-        edge_weights_(smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights,
-                                        parameters.weight_normalization)),
-        plane_weights_(smoothnessWeights(source.planes, FeatureKind::plane, parameters.weights,
-                                         parameters.weight_normalization))
+        edge_weights_(
+            smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization)),
+        plane_weights_(
+            smoothnessWeights(source.planes, FeatureKind::plane, parameters.weights, parameters.weight_normalization))
   {
     report_.target_T_source = run.guess;
   }

@@ -29,9 +29,9 @@ public:
 private:
   const NormalEquations& equations_;
   double weak_threshold_;
-  Vector6 scale_;          ///< from scaled unknowns (all in m) to (m, rad)
-  Vector6 eigenvalues_;    ///< of the scaled H over the sum of the weights
-  Matrix6 eigenvectors_;   ///< columns, of the scaled H
+  Vector6 scale_;         ///< from scaled unknowns (all in m) to (m, rad)
+  Vector6 eigenvalues_;   ///< of the scaled H over the sum of the weights
+  Matrix6 eigenvectors_;  ///< columns, of the scaled H
 };
 
 }  // namespace pcl_floam

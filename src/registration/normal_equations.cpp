@@ -47,7 +47,8 @@ void accumulate(const Correspondence<Factor>& c, const SE3& local_T_sensor, Robu
   const double robust = robustWeight(kernel, squared, scale);
   const double weight = c.weight * robust;
   // J = dr/d(Tp) d(Tp)/d(delta) (Eq. 13, 14)
-  const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian = c.factor.derivative() * RigidMotion::derivative(point, c.response);
+  const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
+      c.factor.derivative() * RigidMotion::derivative(point, c.response);
   sums.information.noalias() += weight * jacobian.transpose() * jacobian;
   sums.gradient.noalias() += weight * jacobian.transpose() * residual;
   sums.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);

@@ -2,8 +2,8 @@
 /// One scan of any point type, seen without copying it and without templates.
 #pragma once
 
-#include <pcl/PCLPointCloud2.h>
 #include <pcl/common/io.h>
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
 
 #include <cstddef>
@@ -41,9 +41,9 @@ struct CloudView {
   std::uint32_t x_offset = 0;  ///< x, y and z are float32
   std::uint32_t y_offset = 0;
   std::uint32_t z_offset = 0;
-  FieldView ring;       ///< field `ring`, `line` or `channel`
-  FieldView time;       ///< field `time`, `t`, `timestamp`, `time_stamp`, `offset_time` or `relative_time`
-  FieldView intensity;  ///< field `intensity` or `reflectivity`
+  FieldView ring;              ///< field `ring`, `line` or `channel`
+  FieldView time;              ///< field `time`, `t`, `timestamp`, `time_stamp`, `offset_time` or `relative_time`
+  FieldView intensity;         ///< field `intensity` or `reflectivity`
   std::string_view time_name;  ///< which of the names it is; tells the likely unit
 
   [[nodiscard]] const std::uint8_t* point(std::size_t i) const { return data + i * stride; }

@@ -30,5 +30,6 @@ struct EIGEN_ALIGN16 PointXYZIRT {
 }  // namespace pcl_floam
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_floam::PointXYZIRT,
-                                  (float, x, x)(float, y, y)(float, z, z)(float, intensity, intensity)(
-                                      float, time, time)(std::uint16_t, ring, ring))
+                                  (float, x, x)(float, y, y)(float, z, z)(float, intensity,
+                                                                          intensity)(float, time, time)(std::uint16_t,
+                                                                                                        ring, ring))

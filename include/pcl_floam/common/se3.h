@@ -32,10 +32,7 @@ struct SE3 {
   {
   }
 
-  [[nodiscard]] SE3 inverse() const
-  {
-    return {rotation.transpose(), -(rotation.transpose() * translation)};
-  }
+  [[nodiscard]] SE3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
 
   /// The 4x4 homogeneous matrix, last row exactly 0 0 0 1.
   template <typename Scalar = double>
@@ -47,10 +44,7 @@ struct SE3 {
     return m;
   }
 
-  [[nodiscard]] Eigen::Isometry3d isometry() const
-  {
-    return Eigen::Isometry3d(matrix());
-  }
+  [[nodiscard]] Eigen::Isometry3d isometry() const { return Eigen::Isometry3d(matrix()); }
 
   /// True when every number of it is finite.
   [[nodiscard]] bool isFinite() const { return rotation.allFinite() && translation.allFinite(); }

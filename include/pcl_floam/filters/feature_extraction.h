@@ -3,8 +3,8 @@
 #pragma once
 
 #include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/filters/sensor_model.h>
 #include <pcl_floam/filters/feature_kind.h>
+#include <pcl_floam/filters/sensor_model.h>
 
 #include <pcl/filters/filter_indices.h>
 

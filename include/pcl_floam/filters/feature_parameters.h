@@ -8,8 +8,8 @@ namespace pcl_floam {
 
 /// Which reading of Eq. 1.
 enum class SmoothnessKind : std::uint8_t {
-  vector_sum,      ///< norm of the mean of the differences (LOAM): 0 on a straight line
-  mean_of_norms    ///< mean of the norms, as the paper prints it: on a wall just the points' spacing
+  vector_sum,    ///< norm of the mean of the differences (LOAM): 0 on a straight line
+  mean_of_norms  ///< mean of the norms, as the paper prints it: on a wall just the points' spacing
 };
 
 [[nodiscard]] const char* toString(SmoothnessKind kind);

@@ -33,8 +33,8 @@ enum class ScanLineFailure : std::uint8_t { none, empty_cloud, source_not_availa
 /// Holds only measurable points: finite and not at (0,0,0). The points of line m are
 /// `index[begin[m]] ... index[begin[m + 1] - 1]`, in the order in which the head swept over them.
 struct ScanLines {
-  std::vector<std::int32_t> index;  ///< point indices into the cloud, line after line
-  std::vector<std::int32_t> begin;  ///< lines() + 1 positions in \ref index
+  std::vector<std::int32_t> index;                    ///< point indices into the cloud, line after line
+  std::vector<std::int32_t> begin;                    ///< lines() + 1 positions in \ref index
   ScanLineSource source = ScanLineSource::automatic;  ///< what was used; `automatic` if nothing could be
   ScanLineFailure failure = ScanLineFailure::none;
   /// Fraction in [0,1] of neighbouring points that agree with the structure found (same line, right order).

@@ -29,8 +29,8 @@ enum class ScanRotation : std::uint8_t { automatic, clockwise, counterclockwise 
 /// A model, not a list: times are computed only for the points that are asked for.
 struct ScanTiming {
   ScanTimingSource source = ScanTimingSource::none;
-  double start = 0.0;     ///< seconds, in the time field's own clock; 0 without one
-  double duration = 0.0;  ///< seconds from fraction 0 to fraction 1; 0 where not known (one turn then)
+  double start = 0.0;             ///< seconds, in the time field's own clock; 0 without one
+  double duration = 0.0;          ///< seconds from fraction 0 to fraction 1; 0 where not known (one turn then)
   double seconds_per_unit = 1.0;  ///< of the time field
   double start_azimuth = 0.0;     ///< rad; source `azimuth`: where the sweep begins
   bool clockwise = true;          ///< source `azimuth`: seen from above

@@ -13,8 +13,8 @@ namespace pcl_floam {
 
 /// A map point near a query, relative to the query: exact also far from the origin.
 struct Neighbor {
-  Eigen::Vector3f offset;          ///< neighbour minus query, m
-  float squared_distance = 0.0F;   ///< m^2
+  Eigen::Vector3f offset;         ///< neighbour minus query, m
+  float squared_distance = 0.0F;  ///< m^2
 };
 
 /// Most neighbours that one nearest-neighbour query can ask for.

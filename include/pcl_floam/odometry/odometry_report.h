@@ -36,16 +36,16 @@ struct StageTimes {
 /// The outcome of one call of `Odometry::track`.
 struct OdometryReport {
   TrackingState state = TrackingState::not_started;
-  std::string reason;           ///< why it was not `tracked`; empty otherwise
-  SE3 world_T_sensor;           ///< at the instant of the sweep that the parameters name
+  std::string reason;  ///< why it was not `tracked`; empty otherwise
+  SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
   ScanTimingSource timing_source = ScanTimingSource::none;
-  std::size_t points = 0;       ///< points in the scan
-  std::size_t edges = 0;        ///< edge features extracted
-  std::size_t planes = 0;       ///< plane features extracted
-  bool keyframe = false;        ///< the scan was added to the map
+  std::size_t points = 0;  ///< points in the scan
+  std::size_t edges = 0;   ///< edge features extracted
+  std::size_t planes = 0;  ///< plane features extracted
+  bool keyframe = false;   ///< the scan was added to the map
   RegistrationReport registration;
   StageTimes milliseconds;
 };

@@ -20,7 +20,7 @@ struct FeatureTarget {
 
 /// Settings of one registration that change from scan to scan.
 struct RegistrationRun {
-  SE3 guess;                    ///< target_T_source
+  SE3 guess;  ///< target_T_source
   /// m; how far off the guess may be: neighbours are searched this far at first, and less with each iteration
   /// down to `max_neighbor_distance`. 0 uses the latter throughout.
   double guess_uncertainty = 0.0;

@@ -32,21 +32,21 @@ enum class SolverKind : std::uint8_t { gauss_newton, ceres };
 /// Settings of \ref EdgePlaneRegistration.
 struct RegistrationParameters {
   SolverKind solver = SolverKind::gauss_newton;
-  int max_iterations = 30;            ///< each with fresh correspondences; >= 1
-  double translation_epsilon = 1e-3;  ///< m; converged when a step is smaller than this ...
-  double rotation_epsilon = 2e-4;     ///< ... and smaller than this, in rad
-  int edge_neighbors = 5;             ///< map points a line is fitted to; 3 to 20
-  int plane_neighbors = 5;            ///< map points a plane is fitted to; 4 to 20
-  double max_neighbor_distance = 1.0; ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
-  double line_ratio = 8.0;            ///< a line's largest eigenvalue must exceed this times the second; > 1
-  double plane_ratio = 3.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
-  double plane_spread = 0.02;         ///< and must exceed this times the largest: no plane through a line; [0, 1)
+  int max_iterations = 30;             ///< each with fresh correspondences; >= 1
+  double translation_epsilon = 1e-3;   ///< m; converged when a step is smaller than this ...
+  double rotation_epsilon = 2e-4;      ///< ... and smaller than this, in rad
+  int edge_neighbors = 5;              ///< map points a line is fitted to; 3 to 20
+  int plane_neighbors = 5;             ///< map points a plane is fitted to; 4 to 20
+  double max_neighbor_distance = 1.0;  ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
+  double line_ratio = 8.0;             ///< a line's largest eigenvalue must exceed this times the second; > 1
+  double plane_ratio = 3.0;            ///< a plane's second eigenvalue must exceed this times the smallest; > 1
+  double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.1;
-  int min_correspondences = 20;       ///< fewer give no pose; >= 6
+  int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information per correspondence than this are weak: the guess is kept along them.
   /// 1/6 is the average direction; [0, 0.1], 0 follows every direction.
   double weak_threshold = 1e-4;

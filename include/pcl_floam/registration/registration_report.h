@@ -13,13 +13,13 @@ namespace pcl_floam {
 /// Why the iterations ended.
 enum class Termination : std::uint8_t {
   not_run,
-  converged,              ///< the last step was below the thresholds
-  iteration_limit,        ///< stopped by the maximum number of iterations; the pose is usable
-  too_few_features,       ///< the source has too few features to constrain a pose
-  empty_target,           ///< nothing to register against
-  too_few_correspondences,///< too few source features have a line or plane nearby
-  degenerate,             ///< the correspondences constrain no direction at all
-  invalid_input           ///< a non-finite guess or non-finite result
+  converged,                ///< the last step was below the thresholds
+  iteration_limit,          ///< stopped by the maximum number of iterations; the pose is usable
+  too_few_features,         ///< the source has too few features to constrain a pose
+  empty_target,             ///< nothing to register against
+  too_few_correspondences,  ///< too few source features have a line or plane nearby
+  degenerate,               ///< the correspondences constrain no direction at all
+  invalid_input             ///< a non-finite guess or non-finite result
 };
 
 [[nodiscard]] const char* toString(Termination termination);

@@ -43,7 +43,8 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
     }
     const std::size_t source = this->fake_indices_ ? i : static_cast<std::size_t>((*this->indices_)[i]);
     const SE3 reference_T_sensor = motion.at(timing_.at(cloud, source));
-    point.getVector3fMap() = (reference_T_sensor * point.getVector3fMap().template cast<double>()).template cast<float>();
+    point.getVector3fMap() =
+        (reference_T_sensor * point.getVector3fMap().template cast<double>()).template cast<float>();
     if constexpr (pcl::traits::has_normal_v<PointT>) {
       point.getNormalVector3fMap() =
           (reference_T_sensor.rotation * point.getNormalVector3fMap().template cast<double>()).template cast<float>();

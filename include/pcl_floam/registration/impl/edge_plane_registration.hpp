@@ -147,7 +147,8 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     from_scan_lines = false;
     source = sourceFeatures(false);
   }
-  FeatureTarget target{prepared_target_ ? prepared_target_->points.get() : nullptr, prepared_target_ ? prepared_target_->points.get() : nullptr};
+  FeatureTarget target{prepared_target_ ? prepared_target_->points.get() : nullptr,
+                       prepared_target_ ? prepared_target_->points.get() : nullptr};
   if (from_scan_lines) {
     target = {&features->search(FeatureKind::edge), &features->search(FeatureKind::plane)};
   }
@@ -165,8 +166,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
   this->converged_ = report_.hasConverged();
   this->nr_iterations_ = report_.iterations;
   this->previous_transformation_ = guess;
-  this->final_transformation_ =
-      this->converged_ ? Matrix4(report_.target_T_source.template matrix<Scalar>()) : guess;
+  this->final_transformation_ = this->converged_ ? Matrix4(report_.target_T_source.template matrix<Scalar>()) : guess;
   this->transformation_ = this->final_transformation_ * guess.inverse();
   this->transformCloud(*this->input_, output, this->final_transformation_);
 }
