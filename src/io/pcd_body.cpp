@@ -69,12 +69,16 @@ void readCompressed(const std::filesystem::path& file, const PcdHeader& header, 
     failAtByte(file, content.size(),
                "the file ends " + std::to_string(sizes[0] - (content.size() - begin)) + " bytes too early");
   }
-  // The format cannot pack more than this; without the check a few bytes could ask for gigabytes of memory.
-  constexpr std::size_t kHighestRatio = 264;
-  if (sizes[1] != needed || needed > kHighestRatio * sizes[0]) {
+  if (sizes[1] != needed) {
     failAtByte(file, header.body_begin,
                "the compressed data are of " + std::to_string(sizes[1]) + " bytes, but the header asks for " +
                    std::to_string(needed));
+  }
+  // The format cannot pack more than this; without the check a few bytes could ask for gigabytes of memory.
+  constexpr std::size_t kHighestRatio = 264;
+  if (needed > kHighestRatio * sizes[0]) {
+    failAtByte(file, header.body_begin,
+               std::to_string(sizes[0]) + " compressed bytes cannot hold " + std::to_string(needed));
   }
   std::vector<char> columns(needed);
   if (needed > 0 && pcl::lzfDecompress(content.data() + begin, sizes[0], columns.data(), sizes[1]) != sizes[1]) {

@@ -43,6 +43,11 @@ KdTreeSearch::KdTreeSearch(const std::vector<Eigen::Vector3d>& points) : index_(
 
 KdTreeSearch::~KdTreeSearch() = default;
 
+bool KdTreeSearch::empty() const
+{
+  return index_->tree == nullptr;
+}
+
 void KdTreeSearch::nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const
 {
   neighbors.count = 0;

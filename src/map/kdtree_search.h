@@ -18,6 +18,8 @@ public:
   explicit KdTreeSearch(const std::vector<Eigen::Vector3d>& points);
   ~KdTreeSearch() override;
 
+  [[nodiscard]] bool empty() const override;
+
   void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
 

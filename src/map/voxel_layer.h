@@ -40,6 +40,7 @@ public:
   void clear();
 
   [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] bool empty() const override { return size_ == 0; }
 
   /// The voxels' points, block by block.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;

@@ -50,13 +50,6 @@ SE3 ConstantVelocity::motion(double periods) const
   return exp(std::min(periods, kMaxExtrapolation) * twist_);
 }
 
-void ConstantVelocity::observe(const SE3& last_T_now, double periods)
-{
-  if (periods > 0.0) {
-    set(log(last_T_now) / periods);
-  }
-}
-
 void ConstantVelocity::set(const Vector6& twist)
 {
   twist_ = twist;

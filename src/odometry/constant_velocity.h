@@ -39,9 +39,6 @@ public:
   /// Motion over a number of periods; extrapolation ends after ten.
   [[nodiscard]] SE3 motion(double periods) const;
 
-  /// Learns from the motion between two tracked scans \p periods apart.
-  void observe(const SE3& last_T_now, double periods);
-
   void set(const Vector6& twist);
 
 private:

@@ -143,6 +143,10 @@ RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& tar
     report.termination = Termination::too_few_features;
     return report;
   }
+  if (target.edges->empty() && target.planes->empty()) {
+    report.termination = Termination::empty_target;
+    return report;
+  }
   return PoseEstimation(source, target, run, parameters).run();
 }
 

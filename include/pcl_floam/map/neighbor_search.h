@@ -33,6 +33,9 @@ class NeighborSearch {
 public:
   virtual ~NeighborSearch() = default;
 
+  /// True when there is nothing to be found.
+  [[nodiscard]] virtual bool empty() const = 0;
+
   /// The up to \p k nearest points within \p radius of \p query, nearest first.
   /// \param query  world frame, m; a non-finite one has no neighbours
   /// \param k      1 to kMaxNeighbors
