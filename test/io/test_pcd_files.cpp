@@ -123,7 +123,7 @@ TEST_P(PcdEncodings, EveryTruncationIsAnErrorWithPositionAndReason)
   const std::string content = contentOf(writeWithPcl(folder, exampleCloud(), GetParam()));
   // The last number of an ascii file may lose digits unnoticed; PCL pads binary files by nothing.
   const std::size_t longest = GetParam() == Encoding::ascii ? content.rfind(' ') : content.size() - 1;
-  for (std::size_t size = 0; size <= longest; size += 7) {
+  for (std::size_t size = longest % 7; size <= longest; size += 7) {
     const std::string reason = reasonOf(folder.write("cut.pcd", content.substr(0, size)));
     EXPECT_NE(reason.find("cut.pcd: "), std::string::npos) << "accepted " << size << " of " << content.size();
     EXPECT_TRUE(size == 0 || reason.find("line ") != std::string::npos || reason.find("byte ") != std::string::npos)
@@ -138,7 +138,7 @@ TEST_P(PcdEncodings, DamagedFilesAreReadOrRefusedInSilence)
   int refused = 0;
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
-  for (int trial = 0; trial < 3000; ++trial) {
+  for (int trial = 0; trial < 500; ++trial) {
     std::string damaged = content;
     for (std::uint32_t changes = 1 + random() % 4; changes > 0; --changes) {
       damaged[random() % damaged.size()] = static_cast<char>(random());
@@ -152,7 +152,7 @@ TEST_P(PcdEncodings, DamagedFilesAreReadOrRefusedInSilence)
     }
   }
   EXPECT_EQ(::testing::internal::GetCapturedStdout() + ::testing::internal::GetCapturedStderr(), "");
-  EXPECT_GT(refused, 100);
+  EXPECT_GT(refused, 20);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, PcdEncodings,
@@ -222,6 +222,58 @@ TEST_F(PcdHeaders, ASizeThatTheFileCannotHoldAsksForNoMemory)
   EXPECT_NE(reasonOf(folder.write("bad.pcd", tall("ascii") + kTwoPoints)), "");
   EXPECT_NE(reasonOf(folder.write("bad.pcd", tall("binary") + kTwoPoints)), "");
   EXPECT_NE(reasonOf(folder.write("bad.pcd", tall("binary_compressed") + kTwoPoints)), "");
+}
+
+/// A compressed file of two points whose data are not compressed further: one run of literal bytes.
+std::string compressedFile(const std::string& columns, std::uint32_t compressed, std::uint32_t uncompressed,
+                           std::string text = header("DATA", "binary_compressed"))
+{
+  const std::uint32_t sizes[2] = {compressed, uncompressed};
+  text.append(reinterpret_cast<const char*>(sizes), sizeof(sizes));
+  for (std::size_t i = 0; i < columns.size(); i += 32) {
+    const std::string run = columns.substr(i, 32);
+    text += static_cast<char>(run.size() - 1);
+    text += run;
+  }
+  return text;
+}
+
+TEST_F(PcdHeaders, CompressedDataThatContradictTheHeaderAreErrors)
+{
+  const std::string columns(32, '\1');
+  EXPECT_EQ(reasonOf(folder.write("good.pcd", compressedFile(columns, 33, 32))), "");
+  EXPECT_NE(reasonOf(folder.write("bad.pcd", compressedFile(columns, 33, 31))).find("the header asks for 32"),
+            std::string::npos);
+  EXPECT_NE(reasonOf(folder.write("bad.pcd", compressedFile(columns, 17, 32))).find("damaged"), std::string::npos);
+  EXPECT_NE(reasonOf(folder.write("bad.pcd", compressedFile(columns, 34, 32))).find("1 bytes too early"),
+            std::string::npos);
+}
+
+TEST_F(PcdHeaders, AFewCompressedBytesCannotAskForGigabytes)
+{
+  std::string text = header("DATA", "binary_compressed");
+  text.replace(text.find("WIDTH 2"), 7, "WIDTH 200000000");
+  text.replace(text.find("POINTS 2"), 8, "POINTS 200000000");
+  const std::string reason =
+      reasonOf(folder.write("bad.pcd", compressedFile(std::string(32, '\1'), 33, 3200000000U, text)));
+  EXPECT_NE(reason.find("33 compressed bytes cannot hold 3200000000"), std::string::npos) << reason;
+}
+
+TEST_F(PcdHeaders, FieldsOfSeveralElementsKeepTheirPlaces)
+{
+  std::string text = header("DATA", "binary_compressed");
+  text.replace(text.find("FIELDS x y z t"), 14, "FIELDS x n y z");
+  text.replace(text.find("TYPE F F F U"), 12, "TYPE F F F F");
+  text.replace(text.find("COUNT 1 1 1 1"), 13, "COUNT 1 3 1 1");
+  const std::vector<float> columns = {1, 2, 10, 11, 12, 20, 21, 22, 3, 4, 5, 6};  // x, n of three, y, z
+  const std::string bytes(reinterpret_cast<const char*>(columns.data()), columns.size() * sizeof(float));
+  pcl::PCLPointCloud2 cloud;
+  readPcd(folder.write("good.pcd", compressedFile(bytes, 50, 48, text)), cloud);
+  const CloudView view = viewOf(cloud);
+  ASSERT_EQ(view.size, 2U);
+  EXPECT_EQ(view.x(1), 2.0F);
+  EXPECT_EQ(view.y(0), 3.0F);
+  EXPECT_EQ(view.z(1), 6.0F);
 }
 
 TEST_F(PcdHeaders, OptionalLinesMayBeMissing)
