@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pcl_floam {
 
@@ -128,13 +127,6 @@ private:
   RegistrationReport report_;
 };
 
-bool isEmpty(const NeighborSearch& search, const SE3& pose)
-{
-  Neighbors neighbors;
-  search.nearest(pose.translation, 1, std::numeric_limits<double>::infinity(), neighbors);
-  return neighbors.count == 0;
-}
-
 }  // namespace
 
 RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
@@ -155,12 +147,7 @@ RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& tar
     report.termination = Termination::empty_target;
     return report;
   }
-  report = PoseEstimation(source, target, run, parameters).run();
-  if (report.termination == Termination::too_few_correspondences && isEmpty(*target.edges, run.guess) &&
-      isEmpty(*target.planes, run.guess)) {
-    report.termination = Termination::empty_target;
-  }
-  return report;
+  return PoseEstimation(source, target, run, parameters).run();
 }
 
 }  // namespace pcl_floam

@@ -8,10 +8,24 @@
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
+
+/// The mask that \ref extractFeatures takes, from PCL's indices; those outside the cloud are left out.
+template <typename Indices>
+[[nodiscard]] std::vector<std::uint8_t> maskOf(const Indices& indices, std::size_t cloud_size)
+{
+  std::vector<std::uint8_t> mask(cloud_size, 0);
+  for (const auto index : indices) {
+    if (index >= 0 && static_cast<std::size_t>(index) < cloud_size) {
+      mask[static_cast<std::size_t>(index)] = 1;
+    }
+  }
+  return mask;
+}
 
 /// Extracts the edge set E_k and the plane set S_k of a scan (the paper's "Sensor Model and Feature Extraction").
 ///

@@ -15,12 +15,7 @@ void FeatureExtraction<PointT>::extractFromInput(FeatureSet& features)
   timing_ = findScanTiming(cloud, lines_, timing_source_);
   std::vector<std::uint8_t> selectable;
   if (!this->fake_indices_ && this->indices_) {
-    selectable.assign(cloud.size, 0);
-    for (const auto index : *this->indices_) {
-      if (index >= 0 && static_cast<std::size_t>(index) < cloud.size) {
-        selectable[static_cast<std::size_t>(index)] = 1;
-      }
-    }
+    selectable = maskOf(*this->indices_, cloud.size);
   }
   extractFeatures(cloud, lines_, timing_, parameters_, features, selectable);
 }

@@ -76,12 +76,7 @@ FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::sourceFeatur
   const CloudView cloud = viewOf(*this->input_);
   std::vector<std::uint8_t> selectable;
   if (!this->fake_indices_ && this->indices_) {
-    selectable.assign(cloud.size, 0);
-    for (const auto index : *this->indices_) {
-      if (index >= 0 && static_cast<std::size_t>(index) < cloud.size) {
-        selectable[static_cast<std::size_t>(index)] = 1;
-      }
-    }
+    selectable = maskOf(*this->indices_, cloud.size);
   }
   return from_scan_lines ? scanLineFeatures(cloud, sensor_, feature_parameters_, selectable)
                          : pointFeatures(cloud, selectable);
