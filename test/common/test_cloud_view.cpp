@@ -1,0 +1,105 @@
+// One view of clouds of every kind.
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/common/cloud_view.h>
+
+#include <pcl/conversions.h>
+
+#include <gtest/gtest.h>
+
+namespace pcl_floam::test {
+namespace {
+
+const std::vector<Return> kReturns = {{{1.0, 2.0, 3.0}, 4, 0, 0.0}, {{-1.5, 0.25, 9.0}, 65535, 1, 0.5},
+                                      {{7.0, -8.0, -0.5}, 200, 2, 1.0}};
+
+TEST(CloudView, SeesTheSameInAPointCloudAndInABlob)
+{
+  const auto cloud = toCloud(kReturns);
+  pcl::PCLPointCloud2 blob;
+  pcl::toPCLPointCloud2(cloud, blob);
+  const CloudView typed = viewOf(cloud);
+  const CloudView untyped = viewOf(blob);
+  for (const CloudView& view : {typed, untyped}) {
+    ASSERT_EQ(view.size, 3U);
+    EXPECT_EQ(view.width, 3U);
+    EXPECT_EQ(view.height, 1U);
+    ASSERT_TRUE(view.ring.exists());
+    ASSERT_TRUE(view.time.exists());
+    ASSERT_TRUE(view.intensity.exists());
+    EXPECT_EQ(view.time_name, "time");
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(view.x(i), cloud[i].x);
+      EXPECT_EQ(view.y(i), cloud[i].y);
+      EXPECT_EQ(view.z(i), cloud[i].z);
+      EXPECT_EQ(view.ring.read(view.point(i)), cloud[i].ring);
+      EXPECT_EQ(view.time.read(view.point(i)), cloud[i].time);
+      EXPECT_EQ(view.intensity.read(view.point(i)), cloud[i].intensity);
+    }
+  }
+}
+
+template <typename T>
+void expectReads(const std::string& name, const std::vector<T>& values, FieldView CloudView::*field)
+{
+  const auto blob = CloudBuilder().field("pad", std::vector<std::uint8_t>(3)).positions(kReturns).field(name, values).build();
+  const CloudView view = viewOf(blob);
+  ASSERT_TRUE((view.*field).exists()) << name;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    EXPECT_EQ((view.*field).read(view.point(i)), static_cast<double>(values[i])) << name;
+    EXPECT_EQ(view.y(i), static_cast<float>(kReturns[i].point.y()));
+  }
+}
+
+TEST(CloudView, ReadsFieldsOfEveryTypeAlignedOrNot)
+{
+  expectReads<std::int8_t>("ring", {-128, 0, 127}, &CloudView::ring);
+  expectReads<std::uint8_t>("ring", {0, 200, 255}, &CloudView::ring);
+  expectReads<std::int16_t>("ring", {-3, 0, 32767}, &CloudView::ring);
+  expectReads<std::uint16_t>("line", {0, 200, 65535}, &CloudView::ring);
+  expectReads<std::int32_t>("channel", {-70000, 0, 70000}, &CloudView::ring);
+  expectReads<std::uint32_t>("t", {0, 1, 4294967295U}, &CloudView::time);
+  expectReads<float>("offset_time", {0.0F, 0.5F, 1e9F}, &CloudView::time);
+  expectReads<double>("timestamp", {1.7e9, 1.7e9 + 1e-6, 0.1}, &CloudView::time);
+  expectReads<std::uint16_t>("reflectivity", {1, 2, 3}, &CloudView::intensity);
+}
+
+TEST(CloudView, FieldsThatAreNotThereDoNotExist)
+{
+  const auto cloud = toPositions(kReturns);
+  const CloudView view = viewOf(cloud);
+  EXPECT_FALSE(view.ring.exists());
+  EXPECT_FALSE(view.time.exists());
+  EXPECT_FALSE(view.intensity.exists());
+}
+
+TEST(CloudView, RefusesACloudWithoutPositions)
+{
+  const std::vector<float> zeros(3);
+  EXPECT_THROW(viewOf(CloudBuilder().field("y", zeros).field("z", zeros).build()), std::invalid_argument);
+  EXPECT_THROW(viewOf(CloudBuilder().field("x", zeros).field("y", zeros).build()), std::invalid_argument);
+  EXPECT_THROW(viewOf(CloudBuilder().field("x", std::vector<double>(3)).field("y", zeros).field("z", zeros).build()),
+               std::invalid_argument);
+}
+
+TEST(CloudView, RefusesABlobThatIsTooShort)
+{
+  auto blob = CloudBuilder().positions(kReturns).build();
+  blob.data.pop_back();
+  EXPECT_THROW(viewOf(blob), std::invalid_argument);
+  blob.point_step = 0;
+  EXPECT_THROW(viewOf(blob), std::invalid_argument);
+}
+
+TEST(CloudView, OrganisedShapeIsKept)
+{
+  pcl::PointCloud<pcl::PointXYZ> cloud(4, 3);
+  const CloudView view = viewOf(cloud);
+  EXPECT_TRUE(view.isOrganized());
+  EXPECT_EQ(view.width, 4U);
+  EXPECT_EQ(view.height, 3U);
+  EXPECT_EQ(view.size, 12U);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

@@ -1,0 +1,277 @@
+// The same scan lines, whatever tells them.
+#include "support/random_motion.h"
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/filters/scan_lines.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace pcl_floam::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+Lidar smallLidar()
+{
+  Lidar lidar;
+  lidar.rings = 16;
+  lidar.columns = 360;
+  return lidar;
+}
+
+double azimuthOf(const Return& r)
+{
+  return std::fmod(std::atan2(r.point.y(), r.point.x()) + 2.0 * kPi, 2.0 * kPi);
+}
+
+std::vector<Return> firingOrder()
+{
+  return sweepRoom(Room(), smallLidar());
+}
+
+/// As in KITTI's files: the top ring first, azimuth rising from the front.
+std::vector<Return> kittiOrder()
+{
+  std::vector<Return> returns = firingOrder();
+  std::sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) {
+    return a.ring != b.ring ? a.ring > b.ring : azimuthOf(a) < azimuthOf(b);
+  });
+  return returns;
+}
+
+/// Row by row, the top ring first, each in firing order.
+std::vector<Return> rowOrder()
+{
+  std::vector<Return> returns = firingOrder();
+  std::stable_sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) { return a.ring > b.ring; });
+  return returns;
+}
+
+std::vector<Return> shuffled()
+{
+  std::vector<Return> returns = firingOrder();
+  std::mt19937 random(1);
+  for (std::size_t i = returns.size() - 1; i > 0; --i) {
+    std::swap(returns[i], returns[random() % (i + 1)]);
+  }
+  return returns;
+}
+
+SensorModel sensorOf(const Lidar& lidar)
+{
+  std::vector<float> elevations;
+  for (int ring = 0; ring < lidar.rings; ++ring) {
+    elevations.push_back(static_cast<float>(lidar.elevation(ring) * 180.0 / kPi));
+  }
+  return customSensor("test", elevations);
+}
+
+ScanLines find(const CloudView& cloud, ScanLineSource source = ScanLineSource::automatic,
+               const SensorModel& sensor = {})
+{
+  ScanLines lines;
+  findScanLines(cloud, sensor, source, lines);
+  return lines;
+}
+
+/// Every point is on exactly one line, with all the others of its ring, in the order of the sweep.
+void expectTrueLines(const ScanLines& lines, const std::vector<Return>& returns)
+{
+  ASSERT_TRUE(lines.valid()) << toString(lines.failure);
+  EXPECT_GT(lines.confidence, 0.95F);
+  EXPECT_EQ(std::set<std::int32_t>(lines.index.begin(), lines.index.end()).size(), returns.size());
+  ASSERT_EQ(lines.index.size(), returns.size());
+  std::set<int> rings;
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    std::size_t breaks = 0;
+    const auto at = [&](std::int32_t n) { return returns[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])]; };
+    for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
+      ASSERT_EQ(at(n).ring, at(lines.begin[m]).ring) << "line " << m;
+      if (n > lines.begin[m]) {
+        breaks += std::abs(at(n).column - at(n - 1).column) == 1 ? 0 : 1;
+      }
+    }
+    EXPECT_LE(breaks, 1U) << "line " << m;  // the seam of the sweep may lie within the line
+    if (lines.begin[m] < lines.begin[m + 1]) {
+      EXPECT_TRUE(rings.insert(at(lines.begin[m]).ring).second) << "two lines for one ring";
+    }
+  }
+  EXPECT_EQ(rings.size(), 16U);
+}
+
+TEST(ScanLines, FromTheRingField)
+{
+  const auto returns = firingOrder();
+  const auto cloud = toCloud(returns);
+  const ScanLines lines = find(viewOf(cloud));
+  EXPECT_EQ(lines.source, ScanLineSource::ring_field);
+  EXPECT_FALSE(lines.sorted_by_azimuth);
+  expectTrueLines(lines, returns);
+}
+
+TEST(ScanLines, FromARingFieldOfAShuffledCloud)
+{
+  const auto returns = shuffled();
+  const auto cloud = toCloud(returns);
+  const ScanLines lines = find(viewOf(cloud));
+  EXPECT_EQ(lines.source, ScanLineSource::ring_field);
+  EXPECT_TRUE(lines.sorted_by_azimuth);
+  ASSERT_EQ(lines.index.size(), returns.size());
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    for (std::int32_t n = lines.begin[m] + 1; n < lines.begin[m + 1]; ++n) {
+      EXPECT_LE(azimuthOf(returns[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n) - 1])]),
+                azimuthOf(returns[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])]));
+    }
+  }
+}
+
+TEST(ScanLines, FromRingFieldsOfOtherNamesAndTypes)
+{
+  const auto returns = firingOrder();
+  std::vector<std::uint8_t> small;
+  std::vector<float> real;
+  for (const Return& r : returns) {
+    small.push_back(static_cast<std::uint8_t>(r.ring));
+    real.push_back(static_cast<float>(r.ring));
+  }
+  const auto line = CloudBuilder().positions(returns).field("line", small).build();
+  EXPECT_EQ(find(viewOf(line)).source, ScanLineSource::ring_field);
+  expectTrueLines(find(viewOf(line)), returns);
+  const auto channel = CloudBuilder().positions(returns).field("channel", real).build();
+  expectTrueLines(find(viewOf(channel)), returns);
+}
+
+TEST(ScanLines, ARingFieldLeftAtZeroIsNone)
+{
+  const auto returns = rowOrder();
+  auto cloud = toCloud(returns);
+  for (auto& point : cloud) {
+    point.ring = 0;
+  }
+  EXPECT_EQ(find(viewOf(cloud), ScanLineSource::ring_field).failure, ScanLineFailure::source_not_available);
+  EXPECT_NE(find(viewOf(cloud)).source, ScanLineSource::ring_field);
+  expectTrueLines(find(viewOf(cloud)), returns);
+}
+
+TEST(ScanLines, FromRowsAndFromColumns)
+{
+  const auto rows = rowOrder();
+  auto cloud = toPositions(rows);
+  cloud.width = 360;
+  cloud.height = 16;
+  ScanLines lines = find(viewOf(cloud));
+  EXPECT_EQ(lines.source, ScanLineSource::organized_rows);
+  EXPECT_FALSE(lines.transposed);
+  expectTrueLines(lines, rows);
+
+  const auto columns = firingOrder();
+  cloud = toPositions(columns);
+  cloud.width = 16;
+  cloud.height = 360;
+  lines = find(viewOf(cloud));
+  EXPECT_EQ(lines.source, ScanLineSource::organized_rows);
+  EXPECT_TRUE(lines.transposed);
+  expectTrueLines(lines, columns);
+}
+
+TEST(ScanLines, FromTheFileOrder)
+{
+  const auto kitti = kittiOrder();
+  ScanLines lines = find(viewOf(toPositions(kitti)));
+  EXPECT_EQ(lines.source, ScanLineSource::file_order);
+  EXPECT_TRUE(lines.kitti_order);
+  EXPECT_EQ(lines.lines(), 16U);
+  expectTrueLines(lines, kitti);
+
+  const auto from_the_rear = rowOrder();
+  lines = find(viewOf(toPositions(from_the_rear)));
+  EXPECT_EQ(lines.source, ScanLineSource::file_order);
+  EXPECT_FALSE(lines.kitti_order);
+  EXPECT_EQ(lines.lines(), 16U);
+  expectTrueLines(lines, from_the_rear);
+}
+
+TEST(ScanLines, FromTheElevationTable)
+{
+  for (const auto& returns : {firingOrder(), kittiOrder()}) {
+    const ScanLines lines =
+        find(viewOf(toPositions(returns)), ScanLineSource::elevation_table, sensorOf(smallLidar()));
+    EXPECT_EQ(lines.source, ScanLineSource::elevation_table);
+    expectTrueLines(lines, returns);
+  }
+  // In the automatic order a named sensor is believed before clusters.
+  EXPECT_EQ(find(viewOf(toPositions(firingOrder())), ScanLineSource::automatic, sensorOf(smallLidar())).source,
+            ScanLineSource::elevation_table);
+}
+
+TEST(ScanLines, FromElevationClusters)
+{
+  const auto returns = firingOrder();
+  const ScanLines lines = find(viewOf(toPositions(returns)));
+  EXPECT_EQ(lines.source, ScanLineSource::elevation_clusters);
+  EXPECT_FALSE(lines.sorted_by_azimuth);
+  expectTrueLines(lines, returns);
+}
+
+TEST(ScanLines, AShuffledCloudIsSortedByAzimuth)
+{
+  const auto returns = shuffled();
+  for (const ScanLineSource source : {ScanLineSource::elevation_clusters, ScanLineSource::elevation_table}) {
+    ScanLines lines = find(viewOf(toPositions(returns)), source, sensorOf(smallLidar()));
+    EXPECT_TRUE(lines.sorted_by_azimuth);
+    EXPECT_LT(lines.confidence, 0.9F);
+    lines.confidence = 1.0F;
+    expectTrueLines(lines, returns);
+  }
+  EXPECT_FALSE(find(viewOf(toPositions(returns)), ScanLineSource::file_order).valid());
+}
+
+TEST(ScanLines, UnmeasuredPointsAreOnNoLine)
+{
+  const auto returns = kittiOrder();
+  auto cloud = toPositions(returns);
+  std::set<std::int32_t> gone;
+  for (std::size_t i = 5; i < cloud.size(); i += 7) {
+    cloud[i].x = i % 2 == 0 ? kNan : 0.0F;
+    cloud[i].y = i % 3 == 0 ? std::numeric_limits<float>::infinity() : 0.0F;
+    cloud[i].z = 0.0F;
+    gone.insert(static_cast<std::int32_t>(i));
+  }
+  for (const ScanLineSource source : {ScanLineSource::file_order, ScanLineSource::elevation_clusters}) {
+    const ScanLines lines = find(viewOf(cloud), source);
+    ASSERT_TRUE(lines.valid());
+    EXPECT_EQ(lines.lines(), 16U);
+    EXPECT_EQ(lines.index.size(), cloud.size() - gone.size());
+    for (const std::int32_t index : lines.index) {
+      EXPECT_EQ(gone.count(index), 0U);
+    }
+  }
+}
+
+TEST(ScanLines, FailuresHaveReasons)
+{
+  EXPECT_EQ(find(viewOf(pcl::PointCloud<pcl::PointXYZ>())).failure, ScanLineFailure::empty_cloud);
+  pcl::PointCloud<pcl::PointXYZ> cloud(100, 1, pcl::PointXYZ(kNan, 0.0F, 0.0F));
+  EXPECT_EQ(find(viewOf(cloud)).failure, ScanLineFailure::empty_cloud);
+
+  std::mt19937 random(2);
+  cloud.clear();
+  for (int i = 0; i < 20000; ++i) {
+    cloud.push_back(pcl::PointXYZ(static_cast<float>(uniform(random, 9.0)), static_cast<float>(uniform(random, 9.0)),
+                                  static_cast<float>(uniform(random, 9.0))));
+  }
+  const ScanLines none = find(viewOf(cloud));
+  EXPECT_EQ(none.failure, ScanLineFailure::no_line_structure);
+  EXPECT_EQ(none.lines(), 0U);
+  EXPECT_TRUE(none.index.empty());
+  for (const ScanLineSource source : {ScanLineSource::ring_field, ScanLineSource::organized_rows,
+                                      ScanLineSource::file_order, ScanLineSource::elevation_table}) {
+    EXPECT_EQ(find(viewOf(cloud), source).failure, ScanLineFailure::source_not_available) << toString(source);
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

@@ -1,0 +1,181 @@
+// When within the sweep a point was measured.
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/filters/scan_timing.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace pcl_floam::test {
+namespace {
+
+Lidar smallLidar(bool clockwise = true, double start_azimuth = kPi)
+{
+  Lidar lidar;
+  lidar.rings = 16;
+  lidar.columns = 360;
+  lidar.clockwise = clockwise;
+  lidar.start_azimuth = start_azimuth;
+  return lidar;
+}
+
+ScanTiming timingOf(const CloudView& cloud, ScanTimingSource source = ScanTimingSource::automatic,
+                    ScanRotation rotation = ScanRotation::automatic)
+{
+  ScanLines lines;
+  findScanLines(cloud, SensorModel(), ScanLineSource::automatic, lines);
+  return findScanTiming(cloud, lines, source, rotation);
+}
+
+/// Largest difference between the told and the true fraction of the sweep.
+double worstError(const ScanTiming& timing, const CloudView& cloud, const std::vector<Return>& returns)
+{
+  double worst = 0.0;
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    worst = std::max(worst, std::abs(static_cast<double>(timing.at(cloud, i)) - returns[i].fraction));
+  }
+  return worst;
+}
+
+/// A cloud whose time field holds `first + fraction * sweep` in units of its own.
+template <typename T>
+pcl::PCLPointCloud2 cloudWithTimes(const std::vector<Return>& returns, const std::string& name, double first,
+                                   double sweep)
+{
+  std::vector<T> times;
+  for (const Return& r : returns) {
+    times.push_back(static_cast<T>(first + r.fraction * sweep));
+  }
+  return CloudBuilder().positions(returns).field(name, times).build();
+}
+
+struct TimeField {
+  const char* what;
+  pcl::PCLPointCloud2 (*make)(const std::vector<Return>&, const std::string&, double, double);
+  const char* name;
+  double first;
+  double sweep;
+  double tolerance;
+};
+
+TEST(ScanTiming, FromTimeFieldsOfEveryUnitAndType)
+{
+  const auto returns = sweepRoom(Room(), smallLidar());
+  const TimeField fields[] = {
+      {"float s after the start", cloudWithTimes<float>, "time", 0.0, 0.1, 1e-5},
+      {"float s before the end", cloudWithTimes<float>, "time", -0.1, 0.1, 1e-5},
+      {"float us", cloudWithTimes<float>, "time", 0.0, 1e5, 1e-5},
+      {"uint32 ns", cloudWithTimes<std::uint32_t>, "t", 0.0, 1e8, 1e-5},
+      {"uint32 us", cloudWithTimes<std::uint32_t>, "offset_time", 0.0, 1e5, 1e-4},
+      {"float64 s since 1970", cloudWithTimes<double>, "timestamp", 1.7e9, 0.1, 1e-4},
+      {"float64 ns since boot", cloudWithTimes<double>, "timestamp", 5e12, 1e8, 1e-5},
+      {"float64 ms", cloudWithTimes<double>, "time_stamp", 3e6, 100.0, 1e-5},
+  };
+  for (const TimeField& field : fields) {
+    const auto cloud = field.make(returns, field.name, field.first, field.sweep);
+    const ScanTiming timing = timingOf(viewOf(cloud));
+    EXPECT_EQ(timing.source, ScanTimingSource::time_field) << field.what;
+    EXPECT_NEAR(timing.duration, 0.1, 1e-4) << field.what;
+    EXPECT_LT(worstError(timing, viewOf(cloud), returns), field.tolerance) << field.what;
+  }
+}
+
+TEST(ScanTiming, ATimeFieldLeftAtZeroIsNone)
+{
+  const auto returns = sweepRoom(Room(), smallLidar());
+  const auto cloud = cloudWithTimes<float>(returns, "time", 0.0, 0.0);
+  EXPECT_EQ(timingOf(viewOf(cloud)).source, ScanTimingSource::azimuth);
+  EXPECT_EQ(timingOf(viewOf(cloud), ScanTimingSource::time_field).source, ScanTimingSource::none);
+}
+
+TEST(ScanTiming, ATimeThatIsNotFiniteIsTheSweepsEnd)
+{
+  const auto returns = sweepRoom(Room(), smallLidar());
+  auto cloud = toCloud(returns);
+  cloud[17].time = std::numeric_limits<float>::quiet_NaN();
+  const ScanTiming timing = timingOf(viewOf(cloud));
+  EXPECT_EQ(timing.source, ScanTimingSource::time_field);
+  EXPECT_EQ(timing.at(viewOf(cloud), 17), 1.0F);
+  EXPECT_NEAR(timing.at(viewOf(cloud), cloud.size() / 2), 0.5, 0.01);
+}
+
+TEST(ScanTiming, MissingFirstReturnsDoNotShiftRelativeTimes)
+{
+  auto returns = sweepRoom(Room(), smallLidar());
+  returns.erase(returns.begin(), returns.begin() + 16 * 60);
+  const auto cloud = toCloud(returns);
+  EXPECT_LT(worstError(timingOf(viewOf(cloud)), viewOf(cloud), returns), 1e-5);
+}
+
+TEST(ScanTiming, FromTheColumnsOfAnOrganisedCloud)
+{
+  auto returns = sweepRoom(Room(), smallLidar());
+  std::stable_sort(returns.begin(), returns.end(), [](const Return& a, const Return& b) { return a.ring > b.ring; });
+  auto cloud = toPositions(returns);
+  cloud.width = 360;
+  cloud.height = 16;
+  const ScanTiming timing = timingOf(viewOf(cloud));
+  EXPECT_EQ(timing.source, ScanTimingSource::columns);
+  EXPECT_LT(worstError(timing, viewOf(cloud), returns), 1e-5);
+}
+
+TEST(ScanTiming, TheDirectionOfRotationIsMeasured)
+{
+  for (const bool clockwise : {true, false}) {
+    for (const double start_azimuth : {kPi, 0.0, 0.5 * kPi, -2.0}) {
+      const auto returns = sweepRoom(Room(), smallLidar(clockwise, start_azimuth));
+      const auto cloud = toPositions(returns);
+      const ScanTiming timing = timingOf(viewOf(cloud));
+      EXPECT_EQ(timing.source, ScanTimingSource::azimuth);
+      EXPECT_EQ(timing.clockwise, clockwise);
+      EXPECT_LT(worstError(timing, viewOf(cloud), returns), 0.006) << clockwise << ' ' << start_azimuth;
+    }
+  }
+}
+
+TEST(ScanTiming, KittisFilesAreSweptClockwiseFromTheRear)
+{
+  auto returns = sweepRoom(Room(), smallLidar());
+  const auto azimuth = [](const Return& r) {
+    return std::fmod(std::atan2(r.point.y(), r.point.x()) + 2.0 * kPi, 2.0 * kPi);
+  };
+  std::sort(returns.begin(), returns.end(), [&](const Return& a, const Return& b) {
+    return a.ring != b.ring ? a.ring > b.ring : azimuth(a) < azimuth(b);
+  });
+  const auto cloud = toPositions(returns);
+  const ScanTiming timing = timingOf(viewOf(cloud));
+  EXPECT_EQ(timing.source, ScanTimingSource::azimuth);
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const double expected = 0.5 - std::atan2(returns[i].point.y(), returns[i].point.x()) / (2.0 * kPi);
+    EXPECT_NEAR(timing.at(viewOf(cloud), i), expected, 1e-5);
+  }
+  EXPECT_LT(worstError(timing, viewOf(cloud), returns), 0.006);
+
+  const ScanTiming told = timingOf(viewOf(cloud), ScanTimingSource::automatic, ScanRotation::counterclockwise);
+  EXPECT_NEAR(told.at(viewOf(cloud), 100), 1.0 - timing.at(viewOf(cloud), 100), 1e-5);
+}
+
+TEST(ScanTiming, ASortedCloudTellsNoTimeUnlessTheRotationIsGiven)
+{
+  auto returns = sweepRoom(Room(), smallLidar());
+  std::mt19937 random(1);
+  std::shuffle(returns.begin(), returns.end(), random);
+  const auto cloud = toPositions(returns);
+  const ScanTiming timing = timingOf(viewOf(cloud));
+  EXPECT_EQ(timing.source, ScanTimingSource::none);
+  EXPECT_EQ(timing.at(viewOf(cloud), 5), 1.0F);
+  const ScanTiming given = timingOf(viewOf(cloud), ScanTimingSource::azimuth, ScanRotation::clockwise);
+  EXPECT_LT(worstError(given, viewOf(cloud), returns), 0.006);
+}
+
+TEST(ScanTiming, NoneCanBeAskedFor)
+{
+  const auto cloud = toCloud(sweepRoom(Room(), smallLidar()));
+  EXPECT_FALSE(timingOf(viewOf(cloud), ScanTimingSource::none).valid());
+  EXPECT_FALSE(timingOf(viewOf(pcl::PointCloud<pcl::PointXYZ>())).valid());
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

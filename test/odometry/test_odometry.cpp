@@ -1,0 +1,271 @@
+// The odometry on sweeps that a moving lidar takes of a furnished room.
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace pcl_floam::test {
+namespace {
+
+using Cloud = pcl::PointCloud<PointXYZIRT>;
+
+/// `world_T_sensor` at a time in periods.
+using Path = std::function<SE3(double)>;
+
+SE3 steadyPath(double t)
+{
+  return exp(Vector6(t * (Vector6() << 0.6, 0.02, 0.0, 0.0, 0.0, 0.04).finished()));
+}
+
+/// From 0.2 m to 0.9 m a period, in a bend that tightens.
+SE3 acceleratedPath(double t)
+{
+  const double way = 0.2 * t + 0.02 * t * t;
+  const double heading = 0.01 * t + 0.001 * t * t;
+  return {expSO3(Eigen::Vector3d(0.0, 0.0, heading)), Eigen::Vector3d(way - 3.0, 0.15 * way, 0.0)};
+}
+
+/// Sweep k lasts from time k to time k + 1.
+Cloud sweep(const Path& path, int k)
+{
+  return toCloud(sweepRoom(Room(), Lidar(), [&](double fraction) { return path(k + fraction); }));
+}
+
+bool sameBits(const SE3& a, const SE3& b)
+{
+  return a.rotation == b.rotation && a.translation == b.translation;
+}
+
+/// How far an odometry's pose after sweep k is from the true one, both seen from the first.
+double error(const SE3& estimate, const Path& path, int k, double instant = 1.0)
+{
+  const SE3 truth = path(instant).inverse() * path(k + instant);
+  return (estimate.translation - truth.translation).norm();
+}
+
+double angleError(const SE3& estimate, const Path& path, int k, double instant = 1.0)
+{
+  const SE3 truth = path(instant).inverse() * path(k + instant);
+  return rotationAngle(estimate.rotation.transpose() * truth.rotation);
+}
+
+constexpr int kScans = 18;
+
+TEST(Odometry, RecoversASteadyMotionFromItsFirstScan)
+{
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < kScans; ++k) {
+    const OdometryReport& report = odometry.track(sweep(steadyPath, k));
+    EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.03) << "scan " << k;
+    EXPECT_LT(angleError(report.world_T_sensor, steadyPath, k), 0.003) << "scan " << k;
+    EXPECT_EQ(report.scan_lines, 32U);
+    EXPECT_EQ(report.timing_source, ScanTimingSource::time_field);
+  }
+}
+
+TEST(Odometry, RecoversAnAcceleratedMotion)
+{
+  for (const CompensationMode mode : {CompensationMode::two_stage, CompensationMode::iterative}) {
+    OdometryParameters parameters;
+    parameters.compensation = mode;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < kScans; ++k) {
+      odometry.track(sweep(acceleratedPath, k));
+      EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << toString(mode) << ", scan " << k;
+      EXPECT_LT(angleError(odometry.pose(), acceleratedPath, k), 0.006) << toString(mode) << ", scan " << k;
+    }
+  }
+}
+
+TEST(Odometry, CompensationIsWorthIt)
+{
+  double worst[2] = {0.0, 0.0};
+  for (const CompensationMode mode : {CompensationMode::none, CompensationMode::two_stage}) {
+    OdometryParameters parameters;
+    parameters.compensation = mode;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < kScans; ++k) {
+      odometry.track(sweep(steadyPath, k));
+      double& largest = worst[mode == CompensationMode::none ? 0 : 1];
+      largest = std::max(largest, error(odometry.pose(), steadyPath, k));
+    }
+  }
+  EXPECT_GT(worst[0], 2.0 * worst[1]);
+}
+
+TEST(Odometry, PosesAreThoseOfTheNamedInstant)
+{
+  for (const PoseInstant instant : {PoseInstant::start, PoseInstant::middle, PoseInstant::end}) {
+    OdometryParameters parameters;
+    parameters.pose_instant = instant;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < kScans; ++k) {
+      odometry.track(sweep(acceleratedPath, k));
+      EXPECT_LT(error(odometry.pose(), acceleratedPath, k, fractionOf(instant)), 0.05)
+          << toString(instant) << ", scan " << k;
+    }
+    // The path is fast enough to tell the instants apart.
+    EXPECT_GT(error(odometry.pose(), acceleratedPath, kScans - 1, 1.0 - fractionOf(instant)),
+              instant == PoseInstant::middle ? -1.0 : 0.2);
+  }
+}
+
+TEST(Odometry, SameBitsForEveryNumberOfThreads)
+{
+  std::vector<SE3> poses;
+  for (const int threads : {1, 2, 3}) {
+    OdometryParameters parameters;
+    parameters.threads = threads;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < 6; ++k) {
+      odometry.track(sweep(acceleratedPath, k));
+    }
+    poses.push_back(odometry.pose());
+  }
+  EXPECT_TRUE(sameBits(poses[0], poses[1]));
+  EXPECT_TRUE(sameBits(poses[0], poses[2]));
+}
+
+TEST(Odometry, ACopyContinuesIdentically)
+{
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < 4; ++k) {
+    odometry.track(sweep(acceleratedPath, k));
+  }
+  Odometry<PointXYZIRT> copy(odometry);
+  Odometry<PointXYZIRT> assigned;
+  assigned = odometry;
+  for (int k = 4; k < 8; ++k) {
+    odometry.track(sweep(acceleratedPath, k));  // first the one, then the others: they share nothing
+  }
+  for (int k = 4; k < 8; ++k) {
+    copy.track(sweep(acceleratedPath, k));
+    assigned.track(sweep(acceleratedPath, k));
+  }
+  EXPECT_TRUE(sameBits(odometry.pose(), copy.pose()));
+  EXPECT_TRUE(sameBits(odometry.pose(), assigned.pose()));
+}
+
+TEST(Odometry, PredictsOverABlindScanAndTracksAgain)
+{
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    const bool blind = k == 8 || k == 9;
+    if (blind) {
+      for (PointXYZIRT& point : scan) {
+        point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+      }
+      scan.is_dense = false;
+    }
+    const OdometryReport& report = odometry.track(scan);
+    if (k > 0) {
+      EXPECT_EQ(report.state, blind ? TrackingState::predicted : TrackingState::tracked) << "scan " << k;
+    }
+    EXPECT_EQ(report.reason.empty(), !blind);
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+TEST(Odometry, KeepsGoingOverMissingScans)
+{
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < kScans; ++k) {
+    const bool missing = k == 6 || k == 7 || k == 12;
+    const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(steadyPath, k));
+    EXPECT_EQ(report.state == TrackingState::predicted, missing) << "scan " << k;
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+TEST(Odometry, StampsTellOfAGap)
+{
+  // Three sweeps were never delivered, and nobody said so: the stamps do.
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < kScans; ++k) {
+    if (k < 8 || k > 10) {
+      EXPECT_NE(odometry.track(sweep(steadyPath, k), 100.0 + 0.1 * k).state, TrackingState::predicted);
+      EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+    }
+  }
+}
+
+TEST(Odometry, StartsWithTheFirstUsableScan)
+{
+  Odometry<PointXYZIRT> odometry;
+  EXPECT_EQ(odometry.track(Cloud()).state, TrackingState::not_started);
+  EXPECT_EQ(odometry.trackMissing().state, TrackingState::not_started);
+  Cloud blank = sweep(steadyPath, 0);
+  for (PointXYZIRT& point : blank) {
+    point.x = point.y = point.z = 0.0F;
+  }
+  EXPECT_EQ(odometry.track(blank).state, TrackingState::not_started);
+  EXPECT_FALSE(odometry.report().reason.empty());
+  EXPECT_TRUE(sameBits(odometry.pose(), SE3()));
+  EXPECT_TRUE(odometry.map().empty());
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state,
+              k == 0 ? TrackingState::initialized : TrackingState::tracked);
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.03);
+  }
+}
+
+TEST(Odometry, ASecondBlindScanDoesNotHarmTheStart)
+{
+  Odometry<PointXYZIRT> odometry;
+  odometry.track(sweep(steadyPath, 0));
+  EXPECT_EQ(odometry.trackMissing().state, TrackingState::predicted);
+  for (int k = 2; k < 10; ++k) {
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, TrackingState::tracked);
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+TEST(Odometry, ResetStartsAnewAtAPose)
+{
+  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> fresh;
+  for (int k = 0; k < 5; ++k) {
+    odometry.track(sweep(acceleratedPath, k));
+  }
+  const SE3 initial = exp((Vector6() << 100.0, -50.0, 2.0, 0.1, 0.2, 1.0).finished());
+  odometry.reset(initial);
+  EXPECT_TRUE(sameBits(odometry.pose(), initial));
+  EXPECT_TRUE(odometry.map().empty());
+  for (int k = 0; k < 5; ++k) {
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
+    EXPECT_LT(error(initial.inverse() * odometry.pose(), steadyPath, k), 0.03);
+  }
+}
+
+TEST(Odometry, ASensorAtRestStaysAtRest)
+{
+  Odometry<PointXYZIRT> odometry;
+  const Cloud scan = sweep([](double) { return SE3(); }, 0);
+  for (int k = 0; k < 5; ++k) {
+    odometry.track(scan);
+    EXPECT_LT(odometry.pose().translation.norm(), 0.01);
+    EXPECT_LT(rotationAngle(odometry.pose().rotation), 1e-3);
+    EXPECT_EQ(odometry.report().keyframe, k == 0);
+  }
+}
+
+TEST(Odometry, SettingsOutOfRangeAreRefused)
+{
+  OdometryParameters parameters;
+  parameters.threads = 0;
+  EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
+  parameters = {};
+  parameters.map.horizon = -1.0;
+  EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
+  parameters = {};
+  parameters.registration.kernel_scale = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

@@ -1,0 +1,98 @@
+// Lines and planes fitted to neighbours.
+#include "registration/line_plane_fit.h"
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+namespace pcl_floam::test {
+namespace {
+
+Neighbors neighborsAt(const std::vector<Eigen::Vector3d>& offsets)
+{
+  Neighbors neighbors;
+  for (const Eigen::Vector3d& offset : offsets) {
+    Neighbor& neighbor = neighbors.neighbor[static_cast<std::size_t>(neighbors.count++)];
+    neighbor.offset = offset.cast<float>();
+    neighbor.squared_distance = neighbor.offset.squaredNorm();
+  }
+  return neighbors;
+}
+
+TEST(LineFit, FindsALine)
+{
+  std::mt19937 random(1);
+  const Eigen::Vector3d direction = Eigen::Vector3d(1.0, -2.0, 0.5).normalized();
+  const Eigen::Vector3d through(0.3, 0.1, -0.2);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 5; ++i) {
+    points.push_back(through + (i - 2.0) * 0.2 * direction + randomTwist(random, 0.01, 0.0).head<3>());
+  }
+  const auto line = fitLine(neighborsAt(points), RegistrationParameters());
+  ASSERT_TRUE(line);
+  EXPECT_NEAR(std::abs(line->direction.dot(direction)), 1.0, 1e-2);
+  EXPECT_NEAR(line->direction.norm(), 1.0, 1e-9);
+  EXPECT_LT((line->center - through).cross(direction).norm(), 0.02);
+}
+
+TEST(PlaneFit, FindsAPlane)
+{
+  std::mt19937 random(2);
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.3, 1.0).normalized();
+  const Eigen::Vector3d through(0.0, 0.2, 0.4);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 6; ++i) {
+    Eigen::Vector3d offset(uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0));
+    offset -= normal * normal.dot(offset);
+    points.push_back(through + offset);
+  }
+  const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+  ASSERT_TRUE(plane);
+  EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-6);
+  EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
+}
+
+TEST(LineFit, RefusesAPlane)
+{
+  EXPECT_FALSE(fitLine(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0}}), RegistrationParameters()));
+}
+
+TEST(PlaneFit, RefusesALine)
+{
+  // Any plane through the line would do: the normal is noise.
+  EXPECT_FALSE(
+      fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}}), RegistrationParameters()));
+}
+
+TEST(PlaneFit, RefusesABall)
+{
+  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}),
+                        RegistrationParameters()));
+}
+
+TEST(LinePlaneFit, RefuseOnePointManyTimes)
+{
+  const Neighbors same = neighborsAt({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}});
+  EXPECT_FALSE(fitLine(same, RegistrationParameters()));
+  EXPECT_FALSE(fitPlane(same, RegistrationParameters()));
+}
+
+TEST(LinePlaneFit, TheRatiosDecide)
+{
+  // Extents 2 : 1 : 0.25 along the axes, so eigenvalues 4 : 1 : 1/16.
+  const Neighbors slab = neighborsAt({{2, 0, 0}, {-2, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0.25}, {0, 0, -0.25}});
+  RegistrationParameters parameters;
+  parameters.line_ratio = 3.9;
+  parameters.plane_ratio = 15.9;
+  EXPECT_TRUE(fitLine(slab, parameters));
+  EXPECT_TRUE(fitPlane(slab, parameters));
+  parameters.line_ratio = 4.1;
+  parameters.plane_ratio = 16.1;
+  EXPECT_FALSE(fitLine(slab, parameters));
+  EXPECT_FALSE(fitPlane(slab, parameters));
+  parameters.plane_ratio = 15.9;
+  parameters.plane_spread = 0.26;
+  EXPECT_FALSE(fitPlane(slab, parameters));
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

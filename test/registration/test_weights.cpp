@@ -1,0 +1,85 @@
+// Smoothness weights (Eq. 9).
+#include "registration/weights.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace pcl_floam::test {
+namespace {
+
+std::vector<Feature> features(const std::vector<float>& smoothness)
+{
+  std::vector<Feature> result(smoothness.size());
+  for (std::size_t i = 0; i < smoothness.size(); ++i) {
+    result[i].smoothness = smoothness[i];
+  }
+  return result;
+}
+
+double sum(const std::vector<double>& weights)
+{
+  return std::accumulate(weights.begin(), weights.end(), 0.0);
+}
+
+const std::vector<float> kSmoothness = {0.01F, 0.3F, 1.7F, 0.05F};
+
+TEST(Weights, EachKindSumsToOneAsEquation9)
+{
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted, WeightScheme::printed}) {
+      const auto one = smoothnessWeights(features(kSmoothness), kind, scheme, WeightNormalization::sum_one);
+      EXPECT_NEAR(sum(one), 1.0, 1e-12);
+      const auto mean = smoothnessWeights(features(kSmoothness), kind, scheme, WeightNormalization::mean_one);
+      EXPECT_NEAR(sum(mean), 4.0, 1e-12);
+    }
+  }
+}
+
+TEST(Weights, PrintedFormIsEquation9)
+{
+  const auto edges =
+      smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::printed, WeightNormalization::sum_one);
+  const auto planes =
+      smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::printed, WeightNormalization::sum_one);
+  for (std::size_t i = 1; i < kSmoothness.size(); ++i) {
+    const double step = kSmoothness[i] - kSmoothness[0];
+    EXPECT_NEAR(edges[i] / edges[0], std::exp(-step), 1e-6);
+    EXPECT_NEAR(planes[i] / planes[0], std::exp(step), 1e-6);
+  }
+}
+
+TEST(Weights, InvertedFormFavoursSharpEdgesAndFlatPlanes)
+{
+  const auto edges = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::edge, WeightScheme::inverted,
+                                       WeightNormalization::mean_one);
+  EXPECT_NEAR(edges[1] / edges[0], std::exp(0.7), 1e-6);
+  const auto planes = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::plane, WeightScheme::inverted,
+                                        WeightNormalization::mean_one);
+  EXPECT_NEAR(planes[1] / planes[0], std::exp(-0.7), 1e-6);
+}
+
+TEST(Weights, UniformOnesAreAllAlike)
+{
+  for (const double weight : smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::uniform,
+                                               WeightNormalization::mean_one)) {
+    EXPECT_DOUBLE_EQ(weight, 1.0);
+  }
+}
+
+TEST(Weights, AFarOutlierDoesNotOverflow)
+{
+  const auto weights = smoothnessWeights(features({0.1F, 2000.0F}), FeatureKind::plane, WeightScheme::printed,
+                                         WeightNormalization::sum_one);
+  EXPECT_NEAR(weights[1], 1.0, 1e-12);
+  EXPECT_NEAR(weights[0], 0.0, 1e-12);
+}
+
+TEST(Weights, NoFeaturesNoWeights)
+{
+  EXPECT_TRUE(smoothnessWeights({}, FeatureKind::edge, WeightScheme::printed, WeightNormalization::sum_one).empty());
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
