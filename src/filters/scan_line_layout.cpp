@@ -42,6 +42,58 @@ float meanElevationStep(const CloudView& cloud, std::size_t step, std::size_t li
   return count == 0 ? 0.0F : static_cast<float>(sum / static_cast<double>(count));
 }
 
+float elevationOf(const CloudView& cloud, std::size_t i)
+{
+  return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));
+}
+
+/// The scan lines that result if the cloud's order is cut wherever azimuth jumps back by most of a turn.
+struct OrderCut {
+  std::vector<std::int32_t> begin{0};
+  std::size_t rising = 0;
+  std::size_t falling = 0;
+  std::size_t jumps_up = 0;
+  std::size_t jumps_down = 0;
+  double tilt = 0.0;  ///< sum of the changes of elevation at the jumps
+  float previous = 0.0F;
+
+  /// \param place number of the measurable points before point \p i, the last of which is \p last
+  void advance(const CloudView& cloud, std::size_t last, std::size_t i, std::int32_t place, float azimuth)
+  {
+    constexpr float kJump = 2.4F;  // 0.6 of a turn: lines may begin late and end early
+    const float step = azimuth - previous;
+    previous = azimuth;
+    if (place == 0) {
+      return;
+    }
+    if (std::abs(step) > kJump) {
+      (step > 0.0F ? jumps_up : jumps_down)++;
+      begin.push_back(place);
+      tilt += std::abs(elevationOf(cloud, i) - elevationOf(cloud, last));
+    } else {
+      rising += step > 0.0F ? 1U : 0U;
+      falling += step < 0.0F ? 1U : 0U;
+    }
+  }
+
+  [[nodiscard]] bool rises() const { return rising >= falling; }
+  [[nodiscard]] double meanTilt() const { return tilt / static_cast<double>(begin.size()); }
+
+  /// Fraction of the steps that go in the prevailing direction.
+  [[nodiscard]] float confidence() const
+  {
+    const std::size_t right_steps = std::max(rising, falling) + (rises() ? jumps_down : jumps_up);
+    const std::size_t steps = rising + falling + jumps_up + jumps_down;
+    return steps == 0 ? 0.0F : static_cast<float>(right_steps) / static_cast<float>(steps);
+  }
+
+  [[nodiscard]] bool isPlausible() const
+  {
+    constexpr float kFileOrderConfidence = 0.95F;  // other orders of points give about one half
+    return confidence() >= kFileOrderConfidence && begin.size() >= 4 && begin.size() <= kMaxScanLines;
+  }
+};
+
 }  // namespace
 
 void groupByLine(const CloudView& cloud, const std::vector<std::int32_t>& line_of_point, int line_count,
@@ -152,49 +204,31 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
 
 bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
 {
-  // A line ends where azimuth jumps back by most of a turn (0.6 of it: lines may begin late and end early).
-  constexpr float kJump = 2.4F;
-  for (const bool rear : {false, true}) {
-    lines.index.clear();
-    lines.begin.assign(1, 0);
-    std::size_t rising = 0;
-    std::size_t falling = 0;
-    std::size_t jumps_up = 0;
-    std::size_t jumps_down = 0;
-    float previous = 0.0F;
-    for (std::size_t i = 0; i < cloud.size; ++i) {
-      if (!isMeasurable(cloud, i)) {
-        continue;
-      }
-      const float sign = rear ? -1.0F : 1.0F;  // seen turned by half a turn, a cut at the rear is one at the front
-      const float azimuth = pseudoAzimuth(sign * cloud.x(i), sign * cloud.y(i));
-      if (!lines.index.empty()) {
-        const float step = azimuth - previous;
-        if (std::abs(step) > kJump) {
-          (step > 0.0F ? jumps_up : jumps_down)++;
-          lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
-        } else {
-          rising += step > 0.0F ? 1U : 0U;
-          falling += step < 0.0F ? 1U : 0U;
-        }
-      }
-      previous = azimuth;
-      lines.index.push_back(static_cast<std::int32_t>(i));
+  OrderCut front;
+  OrderCut rear;
+  std::size_t last = cloud.size;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (!isMeasurable(cloud, i)) {
+      continue;
     }
-    lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
-
-    const bool rises = rising >= falling;
-    const std::size_t right_steps = std::max(rising, falling) + (rises ? jumps_down : jumps_up);
-    const std::size_t steps = rising + falling + jumps_up + jumps_down;
-    lines.confidence = steps == 0 ? 0.0F : static_cast<float>(right_steps) / static_cast<float>(steps);
-    constexpr float kFileOrderConfidence = 0.95F;  // other orders of points give about one half
-    const int line_count = static_cast<int>(lines.lines());
-    if (lines.confidence >= kFileOrderConfidence && line_count >= 4 && line_count <= kMaxScanLines) {
-      lines.kitti_order = !rear && rises;
-      return true;
-    }
+    const auto place = static_cast<std::int32_t>(lines.index.size());
+    const float azimuth = pseudoAzimuth(cloud.x(i), cloud.y(i));
+    front.advance(cloud, last, i, place, azimuth);
+    rear.advance(cloud, last, i, place, azimuth < 2.0F ? azimuth + 2.0F : azimuth - 2.0F);
+    last = i;
+    lines.index.push_back(static_cast<std::int32_t>(i));
   }
-  return false;
+  // Turned by half a turn, the order looks as good; but only where lines really end does the elevation change.
+  const bool is_rear = rear.isPlausible() && !(front.isPlausible() && front.meanTilt() >= rear.meanTilt());
+  OrderCut& cut = is_rear ? rear : front;
+  if (!cut.isPlausible()) {
+    return false;
+  }
+  lines.begin = std::move(cut.begin);
+  lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
+  lines.confidence = cut.confidence();
+  lines.kitti_order = !is_rear && cut.rises();
+  return true;
 }
 
 }  // namespace pcl_floam

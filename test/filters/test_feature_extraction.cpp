@@ -1,4 +1,6 @@
 // Edges at the corners of a room, planes on its walls; and a filter as PCL's filters are.
+// PointXYZIRT is no type of PCL's own.
+#define PCL_NO_PRECOMPILE
 #include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
