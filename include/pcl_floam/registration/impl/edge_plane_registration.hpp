@@ -163,6 +163,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
   this->previous_transformation_ = guess;
   this->final_transformation_ = this->converged_ ? Matrix4(report_.target_T_source.template matrix<Scalar>()) : guess;
   this->transformation_ = this->final_transformation_ * guess.inverse();
+  output = *this->input_;  // with indices set, the base has made it smaller
   this->transformCloud(*this->input_, output, this->final_transformation_);
 }
 
