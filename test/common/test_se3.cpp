@@ -26,7 +26,8 @@ SE3 randomPose(std::mt19937& random)
 TEST(Se3, LogUndoesExpAtEveryAngle)
 {
   std::mt19937 random(1);
-  for (const double angle : {0.0, 1e-15, 1e-9, 1e-6, 0.9e-4, 1.1e-4, 1e-3, 0.1, 1.0, 2.0, 3.0, kPi - 1e-3, kPi - 1e-6}) {
+  for (const double angle :
+       {0.0, 1e-15, 1e-9, 1e-6, 0.9e-4, 1.1e-4, 1e-3, 0.1, 1.0, 2.0, 3.0, kPi - 1e-3, kPi - 1e-6}) {
     for (int n = 0; n < 20; ++n) {
       Vector6 twist = randomTwist(random, 5.0, 1.0);
       twist.tail<3>() *= angle / twist.tail<3>().norm();

@@ -87,7 +87,9 @@ void expectTrueLines(const ScanLines& lines, const std::vector<Return>& returns)
   std::set<int> rings;
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     std::size_t breaks = 0;
-    const auto at = [&](std::int32_t n) { return returns[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])]; };
+    const auto at = [&](std::int32_t n) {
+      return returns[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])];
+    };
     for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
       ASSERT_EQ(at(n).ring, at(lines.begin[m]).ring) << "line " << m;
       if (n > lines.begin[m]) {
@@ -197,8 +199,7 @@ TEST(ScanLines, FromTheFileOrder)
 TEST(ScanLines, FromTheElevationTable)
 {
   for (const auto& returns : {firingOrder(), kittiOrder()}) {
-    const ScanLines lines =
-        find(viewOf(toPositions(returns)), ScanLineSource::elevation_table, sensorOf(smallLidar()));
+    const ScanLines lines = find(viewOf(toPositions(returns)), ScanLineSource::elevation_table, sensorOf(smallLidar()));
     EXPECT_EQ(lines.source, ScanLineSource::elevation_table);
     expectTrueLines(lines, returns);
   }

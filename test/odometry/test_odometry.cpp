@@ -208,8 +208,7 @@ TEST(Odometry, StartsWithTheFirstUsableScan)
   EXPECT_TRUE(sameBits(odometry.pose(), SE3()));
   EXPECT_TRUE(odometry.map().empty());
   for (int k = 0; k < 4; ++k) {
-    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state,
-              k == 0 ? TrackingState::initialized : TrackingState::tracked);
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
     EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.03);
   }
 }

@@ -22,8 +22,7 @@ Eigen::Matrix<double, Factor::kResiduals, 6> numericJacobian(const Factor& facto
   Eigen::Matrix<double, Factor::kResiduals, 6> jacobian;
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = kStep * Vector6::Unit(i);
-    jacobian.col(i) =
-        (factor.residual(exp(step) * q) - factor.residual(exp(Vector6(-step)) * q)) / (2.0 * kStep);
+    jacobian.col(i) = (factor.residual(exp(step) * q) - factor.residual(exp(Vector6(-step)) * q)) / (2.0 * kStep);
   }
   return jacobian;
 }
@@ -113,8 +112,8 @@ TEST(RobustKernel, WeightIsTheDerivativeOfTheCost)
        {RobustKernel::none, RobustKernel::huber, RobustKernel::cauchy, RobustKernel::geman_mcclure}) {
     for (const double squared : {1e-6, 0.01, 0.2, 1.0, 30.0}) {
       const double step = 1e-5 * squared;
-      const double numeric = (robustCost(kernel, squared + step, 0.3) - robustCost(kernel, squared - step, 0.3)) /
-                             (2.0 * step);
+      const double numeric =
+          (robustCost(kernel, squared + step, 0.3) - robustCost(kernel, squared - step, 0.3)) / (2.0 * step);
       EXPECT_NEAR(robustWeight(kernel, squared, 0.3), numeric, 1e-6) << toString(kernel) << ' ' << squared;
     }
   }

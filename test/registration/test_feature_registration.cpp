@@ -39,8 +39,7 @@ protected:
     map_ = KeyframeVoxelMap(parameters);
     for (const double x : {-1.0, 0.0, 1.0}) {
       const SE3 pose(Eigen::Matrix3d::Identity(), Eigen::Vector3d(x, 0.3 * x, 0.2 * x));
-      map_.insert(featuresOf(toCloud(sweepRoom(room_, lidar_, pose))),
-                  SE3(pose.rotation, pose.translation + origin));
+      map_.insert(featuresOf(toCloud(sweepRoom(room_, lidar_, pose))), SE3(pose.rotation, pose.translation + origin));
     }
   }
 
@@ -142,8 +141,8 @@ TEST_F(FeatureRegistrationTest, AWideSearchBringsInAFarGuess)
   RegistrationRun run;
   run.guess = SE3(truth_.rotation, truth_.translation + Eigen::Vector3d(1.5, -1.0, 0.0));
   run.guess_uncertainty = 3.0;
-  const auto report = registerFeatures(
-      source, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run, parameters_);
+  const auto report =
+      registerFeatures(source, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run, parameters_);
   EXPECT_LT(distance(report.target_T_source, truth_), 0.01);
 }
 
@@ -242,8 +241,8 @@ TEST_F(FeatureRegistrationTest, RecompensationSeesEveryIteration)
     EXPECT_EQ(features.planes.size(), scan_.planes.size());
     ++calls;
   };
-  const auto report = registerFeatures(
-      source, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run, parameters_);
+  const auto report =
+      registerFeatures(source, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run, parameters_);
   EXPECT_EQ(calls, report.iterations);
 }
 

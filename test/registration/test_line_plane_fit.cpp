@@ -53,14 +53,15 @@ TEST(PlaneFit, FindsAPlane)
 
 TEST(LineFit, RefusesAPlane)
 {
-  EXPECT_FALSE(fitLine(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0}}), RegistrationParameters()));
+  EXPECT_FALSE(
+      fitLine(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0}}), RegistrationParameters()));
 }
 
 TEST(PlaneFit, RefusesALine)
 {
   // Any plane through the line would do: the normal is noise.
-  EXPECT_FALSE(
-      fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}}), RegistrationParameters()));
+  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}}),
+                        RegistrationParameters()));
 }
 
 TEST(PlaneFit, RefusesABall)
