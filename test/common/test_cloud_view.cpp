@@ -77,9 +77,12 @@ TEST(CloudView, FieldsThatAreNotThereDoNotExist)
 TEST(CloudView, RefusesACloudWithoutPositions)
 {
   const std::vector<float> zeros(3);
-  EXPECT_THROW(viewOf(CloudBuilder().field("y", zeros).field("z", zeros).build()), std::invalid_argument);
-  EXPECT_THROW(viewOf(CloudBuilder().field("x", zeros).field("y", zeros).build()), std::invalid_argument);
-  EXPECT_THROW(viewOf(CloudBuilder().field("x", std::vector<double>(3)).field("y", zeros).field("z", zeros).build()),
+  EXPECT_THROW(static_cast<void>(viewOf(CloudBuilder().field("y", zeros).field("z", zeros).build())),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(viewOf(CloudBuilder().field("x", zeros).field("y", zeros).build())),
+               std::invalid_argument);
+  EXPECT_THROW(static_cast<void>(viewOf(
+                   CloudBuilder().field("x", std::vector<double>(3)).field("y", zeros).field("z", zeros).build())),
                std::invalid_argument);
 }
 
