@@ -87,7 +87,9 @@ TEST(KittiRaw0048, PcdSequenceIsTrackedSmoothly)
 {
   const std::filesystem::path folder = dataFolder("kitti_raw_0048_pcd");
   SKIP_WITHOUT(folder);
-  OdometryPipeline odometry;
+  OdometryParameters parameters;
+  parameters.pose_instant = PoseInstant::middle;
+  OdometryPipeline odometry(parameters);
   const std::vector<SE3> poses = trackAll(ScanSource(folder), odometry);
 
   ASSERT_EQ(poses.size(), 22U);
