@@ -16,6 +16,9 @@ result="$here/build/demo/result"
 
 if [ $# -gt 0 ]; then
   "$bin/pcl_floam_odometry" "$@" --output "$result"
+elif [ ! -x "$bin/pcl_floam_simulate" ]; then
+  echo "The simulator was not built: it needs Embree 3. Give a folder of scans instead." >&2
+  exit 1
 else
   data="$here/build/demo/warehouse"
   [ -e "$data/poses_end.txt" ] || "$bin/pcl_floam_simulate" warehouse --output "$data"

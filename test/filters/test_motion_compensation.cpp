@@ -9,6 +9,22 @@
 #include <gtest/gtest.h>
 
 namespace pcl_floam::test {
+
+/// A point with a normal and a time.
+struct EIGEN_ALIGN16 PointNormalTime {
+  PCL_ADD_POINT4D
+  PCL_ADD_NORMAL4D
+  float time = 0.0F;
+  PCL_MAKE_ALIGNED_OPERATOR_NEW
+};
+
+}  // namespace pcl_floam::test
+
+POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_floam::test::PointNormalTime,
+                                  (float, x, x)(float, y, y)(float, z, z)(float, normal_x, normal_x)(
+                                      float, normal_y, normal_y)(float, normal_z, normal_z)(float, time, time))
+
+namespace pcl_floam::test {
 namespace {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
@@ -205,18 +221,34 @@ TEST(MotionCompensation, FollowsTheBaseAsAnyFilter)
 
 TEST(MotionCompensation, NormalsTurnWithThePoints)
 {
-  pcl::PointCloud<pcl::PointXYZINormal> cloud;
-  MotionCompensation<pcl::PointXYZINormal> compensation;
-  cloud.resize(2);
-  cloud[0].getVector3fMap() = Eigen::Vector3f(5.0F, 1.0F, 0.0F);
-  cloud[0].getNormalVector3fMap() = Eigen::Vector3f::UnitX();
+  pcl::PointCloud<PointNormalTime> cloud(3, 1);
+  for (std::size_t i = 0; i < 3; ++i) {
+    cloud[i].getVector3fMap() = Eigen::Vector3f(5.0F, 1.0F, 0.0F);
+    cloud[i].getNormalVector3fMap() = Eigen::Vector3f(0.6F, 0.0F, 0.8F);
+    cloud[i].time = 0.05F * static_cast<float>(i);
+  }
+  MotionCompensation<PointNormalTime> compensation;
   compensation.setInputCloud(cloud.makeShared());
   compensation.setTwist(kTwist);
-  pcl::PointCloud<pcl::PointXYZINormal> output;
-  compensation.filter(output);  // no time can be told: a copy
+  pcl::PointCloud<PointNormalTime> output;
+  compensation.filter(output);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Matrix3d end_R_point = exp(Vector6((0.5 * static_cast<double>(i) - 1.0) * kTwist)).rotation;
+    const Eigen::Vector3d expected = end_R_point * Eigen::Vector3d(0.6, 0.0, 0.8);
+    EXPECT_LT((output[i].getNormalVector3fMap().cast<double>() - expected).norm(), 1e-6);
+  }
+}
+
+TEST(MotionCompensation, WithoutTimesTheOutputIsACopy)
+{
+  pcl::PointCloud<pcl::PointXYZ> cloud(2, 1, pcl::PointXYZ(5.0F, 1.0F, 0.0F));
+  MotionCompensation<pcl::PointXYZ> compensation;
+  compensation.setInputCloud(cloud.makeShared());
+  compensation.setTwist(kTwist);
+  pcl::PointCloud<pcl::PointXYZ> output;
+  compensation.filter(output);
   EXPECT_FALSE(compensation.getScanTiming().valid());
   EXPECT_EQ(output[0].getVector3fMap(), cloud[0].getVector3fMap());
-  EXPECT_EQ(output[0].getNormalVector3fMap(), cloud[0].getNormalVector3fMap());
 }
 
 TEST(MotionCompensation, RefusesAMotionThatIsNotFinite)

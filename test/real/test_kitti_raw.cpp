@@ -98,7 +98,8 @@ TEST(KittiRaw0048, PcdSequenceIsTrackedSmoothly)
     const SE3 after = poses[i - 1].inverse() * poses[i];
     // At 10 Hz 5 m/s^2 change the step by 5 cm; the rest is left for the estimate's own noise.
     EXPECT_LT((after.translation - before.translation).norm(), 0.1) << "scan " << i;
-    EXPECT_LT(rotationAngle(before.rotation.transpose() * after.rotation), 0.01) << "scan " << i;
+    // A car that drives over a kerb nods by about a degree.
+    EXPECT_LT(rotationAngle(before.rotation.transpose() * after.rotation), 0.02) << "scan " << i;
   }
 }
 
