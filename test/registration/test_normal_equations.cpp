@@ -169,5 +169,25 @@ TEST_F(NormalEquationsTest, AWallLeavesThreeDirectionsWeak)
   EXPECT_GT(analysis.covariance()(0, 0), 1e3 * analysis.covariance()(2, 2));
 }
 
+TEST_F(NormalEquationsTest, NoiseAlongWeakDirectionsIsNotFollowed)
+{
+  // Normals that are a little off seem to tell something of x and y, and noise in the distances turns it into metres.
+  std::mt19937 random(3);
+  correspondences_ = makeCorrespondences(SE3(), 0.0, 0, 500);
+  for (auto& c : correspondences_.planes) {
+    c.point.z() = 0.0;
+    c.factor.center = c.point + Eigen::Vector3d(0.0, 0.0, 0.1 + uniform(random, 0.05));
+    c.factor.normal = Eigen::Vector3d(uniform(random, 0.005), uniform(random, 0.005), 1.0).normalized();
+  }
+  parameters_.kernel = RobustKernel::none;
+  const NormalEquations equations = equationsAt(SE3());
+  const Vector6 followed = InformationAnalysis(equations, 0.0).step();
+  const InformationAnalysis analysis(equations, 1e-4);
+  EXPECT_EQ(analysis.weakDirections().size(), 3U);
+  EXPECT_GT(followed.head<2>().norm(), 0.05);
+  EXPECT_LT(analysis.step().head<2>().norm(), 0.005);
+  EXPECT_NEAR(analysis.step()[2], 0.1, 0.01);
+}
+
 }  // namespace
 }  // namespace pcl_floam::test
