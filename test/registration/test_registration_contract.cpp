@@ -4,6 +4,7 @@
 #include <pcl_floam/registration/edge_plane_registration.h>
 
 #include <pcl/common/transforms.h>
+#include <pcl/registration/incremental_registration.h>
 
 #include <gtest/gtest.h>
 
@@ -150,6 +151,37 @@ TEST(RegistrationContract, ATargetChangedInPlaceAndSetAgainIsNew)
   registration.setInputTarget(target);
   registration.align(output);
   EXPECT_LT(disagreement(*source, registration.getFinalTransformation(), motion(1.0)), 0.005);
+}
+
+TEST(RegistrationContract, FitnessScoreSurvivesWhatIsNotFinite)
+{
+  const auto source = sampledObject(2, 1.0);
+  const auto target = sampledObject(1, 1.0);
+  Registration registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  Cloud output;
+  registration.align(output);
+  const double score = registration.getFitnessScore();
+  EXPECT_LT(score, 0.01);
+  (*source)[5].x = kNan;
+  (*source)[6].z = std::numeric_limits<float>::infinity();
+  source->is_dense = false;
+  registration.align(output);
+  EXPECT_TRUE(registration.hasConverged());
+  EXPECT_NEAR(registration.getFitnessScore(), score, 0.01 * score);
+}
+
+TEST(RegistrationContract, WorksInsideIncrementalRegistration)
+{
+  pcl::registration::IncrementalRegistration<Point> incremental;
+  incremental.setRegistration(pcl::make_shared<Registration>());
+  const auto first = sampledObject(1, 1.0);
+  const auto second = pcl::make_shared<Cloud>();
+  pcl::transformPointCloud(*sampledObject(2, 1.0), *second, Eigen::Matrix4f(motion(1.0).inverse()));
+  EXPECT_TRUE(incremental.registerCloud(first));
+  EXPECT_TRUE(incremental.registerCloud(second));
+  EXPECT_LT(disagreement(*second, incremental.getAbsoluteTransform(), motion(1.0)), 0.005);
 }
 
 }  // namespace

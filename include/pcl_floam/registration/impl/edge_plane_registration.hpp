@@ -1,6 +1,7 @@
 #pragma once
 
 #include <pcl_floam/registration/cloud_features.h>
+#include <pcl_floam/registration/finite_search.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +15,7 @@ EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
 {
   this->reg_name_ = "EdgePlaneRegistration";
   this->max_iterations_ = parameters_.max_iterations;
+  this->setSearchMethodTarget(pcl::make_shared<FiniteSearch<PointTarget>>());
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
