@@ -1,11 +1,9 @@
-// Edges at the corners of a room, planes on its walls; and a filter as PCL's filters are.
+// Edges at the corners of a room, planes on its walls.
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
-#include "support/synthetic_cloud.h"
+#include "support/feature_rooms.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
-
-#include <pcl/filters/passthrough.h>
 
 #include <gtest/gtest.h>
 
@@ -15,42 +13,7 @@
 namespace pcl_floam::test {
 namespace {
 
-using Cloud = pcl::PointCloud<PointXYZIRT>;
 using Extraction = FeatureExtraction<PointXYZIRT>;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-
-/// An empty room, so that the only edges are its four vertical ones (the horizontal ones are crossed at an angle by
-/// scan lines that are not level).
-Room emptyRoom()
-{
-  Room room;
-  room.walls = {{-6.0, -4.0, -30.0}, {5.0, 5.0, 30.0}};
-  room.furniture.clear();
-  return room;
-}
-
-Cloud::Ptr scanOf(const Room& room)
-{
-  return pcl::make_shared<Cloud>(toCloud(sweepRoom(room, Lidar())));
-}
-
-/// Distances of a point from the nearest walls: the first is how far off the walls, the second how far off a corner.
-std::pair<double, double> distancesFromWalls(const Room& room, double x, double y)
-{
-  const double to_x = std::min(std::abs(x - room.walls.lowest[0]), std::abs(x - room.walls.highest[0]));
-  const double to_y = std::min(std::abs(y - room.walls.lowest[1]), std::abs(y - room.walls.highest[1]));
-  return {std::min(to_x, to_y), std::max(to_x, to_y)};
-}
-
-pcl::Indices filtered(Extraction& extraction, const Cloud::ConstPtr& cloud, FeatureKind kind)
-{
-  pcl::Indices indices;
-  extraction.setFeatureKind(kind);
-  extraction.setInputCloud(cloud);
-  extraction.filter(indices);
-  return indices;
-}
 
 TEST(FeatureExtraction, EdgesLieAtTheCornersOfARoom)
 {
@@ -74,16 +37,39 @@ TEST(FeatureExtraction, EdgesLieAtTheCornersOfARoom)
 TEST(FeatureExtraction, PlanesLieOnItsWalls)
 {
   const Room room = emptyRoom();
+  FeatureParameters parameters;
+  parameters.edges_per_sector = 0;  // edges keep planes away from corners; so must the threshold by itself
+  parameters.planes_per_sector = 1000;
   FeatureSet features;
   Extraction extraction;
+  extraction.setParameters(parameters);
   extraction.setInputCloud(scanOf(room));
   ASSERT_TRUE(extraction.extract(features));
+  EXPECT_TRUE(features.edges.empty());
   EXPECT_GT(features.planes.size(), 2000U);
   for (const Feature& plane : features.planes) {
     const auto [off_wall, off_corner] = distancesFromWalls(room, plane.x, plane.y);
     EXPECT_LT(off_wall, 1e-4);
     EXPECT_GT(off_corner, 0.05);
-    EXPECT_LT(plane.smoothness, extraction.getParameters().plane_threshold);
+    EXPECT_LT(plane.smoothness, parameters.plane_threshold);
+  }
+}
+
+TEST(FeatureExtraction, EdgesAreANeighbourhoodApart)
+{
+  FeatureSet features;
+  Extraction extraction;
+  extraction.setInputCloud(scanOf(Room()));
+  ASSERT_TRUE(extraction.extract(features));
+  EXPECT_GT(features.edges.size(), 100U);
+  for (const Feature& edge : features.edges) {
+    for (const auto* set : {&features.edges, &features.planes}) {
+      for (const Feature& other : *set) {  // 32 points a column
+        if (&other != &edge && other.index % 32 == edge.index % 32) {
+          EXPECT_GT(std::abs(other.index - edge.index) / 32, extraction.getParameters().neighbors_each_side);
+        }
+      }
+    }
   }
 }
 
@@ -125,6 +111,20 @@ TEST(FeatureExtraction, NothingOnTheFarSideOfADepthStepIsAnEdge)
     }
   }
   EXPECT_GT(on_board, 40);
+
+  // Nor when the board's own edges, which keep others away, are not asked for.
+  auto wall = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < extraction.getInputCloud()->size(); ++i) {
+    if ((*extraction.getInputCloud())[i].x > 5.3F) {
+      wall->push_back(static_cast<int>(i));
+    }
+  }
+  extraction.setIndices(wall);
+  ASSERT_TRUE(extraction.extract(features));
+  EXPECT_FALSE(features.planes.empty());
+  for (const Feature& edge : features.edges) {
+    EXPECT_GT(std::abs(edge.y), 3.0F);
+  }
 }
 
 TEST(FeatureExtraction, NothingOutOfRangeIsAFeature)
@@ -145,134 +145,6 @@ TEST(FeatureExtraction, NothingOutOfRangeIsAFeature)
       EXPECT_LE(range, 12.0F);
     }
   }
-}
-
-TEST(FeatureExtraction, NegativeIsTheComplementAmongFinitePoints)
-{
-  const auto cloud = scanOf(Room());
-  for (std::size_t i = 100; i < cloud->size(); i += 1000) {
-    (*cloud)[i].x = kNan;
-  }
-  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
-    Extraction extraction(true);
-    const pcl::Indices selected = filtered(extraction, cloud, kind);
-    const pcl::Indices removed = *extraction.getRemovedIndices();
-    extraction.setNegative(true);
-    const pcl::Indices negative = filtered(extraction, cloud, kind);
-    EXPECT_FALSE(selected.empty());
-    std::set<int> all(selected.begin(), selected.end());
-    all.insert(negative.begin(), negative.end());
-    EXPECT_EQ(all.size(), selected.size() + negative.size());
-    std::size_t finite = 0;
-    for (std::size_t i = 0; i < cloud->size(); ++i) {
-      const bool is_finite = pcl::isFinite((*cloud)[i]);
-      finite += is_finite ? 1U : 0U;
-      EXPECT_EQ(all.count(static_cast<int>(i)) != 0, is_finite);
-    }
-    EXPECT_EQ(all.size(), finite);
-    EXPECT_EQ(removed.size(), cloud->size() - selected.size());  // with those that are not finite
-  }
-}
-
-TEST(FeatureExtraction, HonoursIndicesInTheirOrder)
-{
-  const auto cloud = scanOf(Room());
-  Extraction extraction;
-  auto asked = pcl::make_shared<pcl::Indices>();
-  for (int i = static_cast<int>(cloud->size()) - 1; i >= 0; i -= 2) {
-    asked->push_back(i);
-  }
-  const pcl::Indices before = *asked;
-  extraction.setIndices(asked);
-  const pcl::Indices among = filtered(extraction, cloud, FeatureKind::plane);
-  EXPECT_EQ(*asked, before);
-  EXPECT_FALSE(among.empty());
-  EXPECT_TRUE(std::is_sorted(among.rbegin(), among.rend()));
-  EXPECT_TRUE(std::all_of(among.begin(), among.end(), [](int index) { return index % 2 == 1; }));
-
-  extraction.filter(*asked);  // into the very vector that was set
-  EXPECT_EQ(*asked, among);
-}
-
-TEST(FeatureExtraction, ACutByIndicesIsNoEdge)
-{
-  const Room room = emptyRoom();
-  const auto cloud = scanOf(room);
-  auto half = pcl::make_shared<pcl::Indices>();
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if ((*cloud)[i].y > 1.0F) {
-      half->push_back(static_cast<int>(i));
-    }
-  }
-  Extraction extraction;
-  extraction.setIndices(half);
-  const pcl::Indices edges = filtered(extraction, cloud, FeatureKind::edge);
-  EXPECT_FALSE(edges.empty());
-  for (const int index : edges) {
-    const PointXYZIRT& point = (*cloud)[static_cast<std::size_t>(index)];
-    EXPECT_LT(distancesFromWalls(room, point.x, point.y).second, 0.1);
-  }
-}
-
-TEST(FeatureExtraction, KeepsTheCloudOrganised)
-{
-  const auto cloud = scanOf(Room());
-  cloud->width = 32;
-  cloud->height = 900;
-  Extraction extraction;
-  const pcl::Indices edges = filtered(extraction, cloud, FeatureKind::edge);
-  extraction.setKeepOrganized(true);
-  Cloud output;
-  extraction.filter(output);
-  ASSERT_EQ(output.size(), cloud->size());
-  EXPECT_EQ(output.width, 32U);
-  EXPECT_EQ(output.height, 900U);
-  std::size_t kept = 0;
-  for (const PointXYZIRT& point : output) {
-    kept += pcl::isFinite(point) ? 1U : 0U;
-  }
-  EXPECT_EQ(kept, edges.size());
-}
-
-TEST(FeatureExtraction, ChainsWithPclsFiltersByTheirBase)
-{
-  const auto cloud = scanOf(Room());
-  auto pass = pcl::make_shared<pcl::PassThrough<PointXYZIRT>>();
-  pass->setFilterFieldName("z");
-  pass->setFilterLimits(-1.0F, 10.0F);
-  const std::vector<pcl::Filter<PointXYZIRT>::Ptr> chain = {pass, pcl::make_shared<Extraction>()};
-  Cloud::Ptr current = cloud;
-  for (const auto& filter : chain) {
-    auto next = pcl::make_shared<Cloud>();
-    filter->setInputCloud(current);
-    filter->filter(*next);
-    current = next;
-  }
-  EXPECT_GT(current->size(), 10U);
-  EXPECT_LT(current->size(), cloud->size() / 10);
-}
-
-TEST(FeatureExtraction, RemembersNothingBetweenCalls)
-{
-  Extraction used;
-  filtered(used, scanOf(Room()), FeatureKind::plane);
-  Extraction fresh;
-  const auto cloud = scanOf(emptyRoom());
-  EXPECT_EQ(filtered(used, cloud, FeatureKind::edge), filtered(fresh, cloud, FeatureKind::edge));
-}
-
-TEST(FeatureExtraction, NoScanLinesNoFeatures)
-{
-  const auto cloud = pcl::make_shared<Cloud>();
-  FeatureSet features;
-  Extraction extraction;
-  EXPECT_FALSE(extraction.extract(features));  // no input at all
-  extraction.setInputCloud(cloud);
-  EXPECT_FALSE(extraction.extract(features));
-  EXPECT_EQ(extraction.getScanLines().failure, ScanLineFailure::empty_cloud);
-  FeatureParameters parameters;
-  parameters.sectors = 0;
-  EXPECT_THROW(extraction.setParameters(parameters), std::invalid_argument);
 }
 
 }  // namespace
