@@ -60,6 +60,35 @@ TEST(EdgePlaneRegistration, RegistersAnObjectOfAnySize)
   }
 }
 
+TEST(EdgePlaneRegistration, TheResultScalesWithTheScene)
+{
+  // By powers of two, so that nothing but absolute lengths in the code can make a difference.
+  const auto result = [](float scale) {
+    auto source = sampledObject(2, 1.0);
+    auto target = sampledObject(1, 1.0);
+    pcl::transformPointCloud(*source, *source, Eigen::Matrix4f(motion(1.0).inverse()));
+    for (const auto& cloud : {source, target}) {
+      for (Point& point : *cloud) {
+        point.getVector3fMap() *= scale;
+      }
+    }
+    Registration registration;
+    registration.setInputSource(source);
+    registration.setInputTarget(target);
+    Cloud output;
+    registration.align(output);
+    Eigen::Matrix4f unscaled = registration.getFinalTransformation();
+    unscaled.topRightCorner<3, 1>() /= scale;
+    return std::make_pair(unscaled, registration.report().iterations);
+  };
+  const auto [expected, iterations] = result(1.0F);
+  for (const float scale : {1.0F / 1024.0F, 1.0F / 32.0F, 512.0F}) {
+    const auto [transformation, iterations_scaled] = result(scale);
+    EXPECT_LT((transformation - expected).norm(), 1e-6F) << "scale " << scale;
+    EXPECT_EQ(iterations_scaled, iterations) << "scale " << scale;
+  }
+}
+
 TEST(EdgePlaneRegistration, SurvivesNoReturnsAndWhatIsNotFinite)
 {
   auto source = sampledObject(2, 1.0);
