@@ -1,6 +1,10 @@
 #pragma once
 
+// PCL's own templates, too: its libraries hold them for PCL's point types only, not for PointXYZIRT or yours.
 #include <pcl/common/point_tests.h>
+#include <pcl/filters/impl/filter.hpp>
+#include <pcl/filters/impl/filter_indices.hpp>
+#include <pcl/impl/pcl_base.hpp>
 
 #include <cstdint>
 #include <vector>
