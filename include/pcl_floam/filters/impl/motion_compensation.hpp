@@ -2,9 +2,9 @@
 
 // PCL's own templates, too: its libraries hold them for PCL's point types only, not for PointXYZIRT or yours.
 #include <pcl/common/point_tests.h>
+#include <pcl/point_types.h>
 #include <pcl/filters/impl/filter.hpp>
 #include <pcl/impl/pcl_base.hpp>
-#include <pcl/point_types.h>
 
 #include <stdexcept>
 
