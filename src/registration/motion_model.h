@@ -8,9 +8,9 @@ namespace pcl_floam {
 
 /// The paper's motion model: all points move with one rigid pose.
 ///
-/// With LOAM's iterative compensation a point measured at the fraction s of the sweep follows only a part of a change
-/// of the pose at the sweep's end: all of it at the end, next to none at the start, which the last pose holds. That
-/// part is the point's *response*; without it the steps fall short and the iterations take three times as many.
+/// With LOAM's iterative compensation a change of the pose changes the sweep's motion, too, since the last pose stays
+/// where it was: a point measured before the pose's instant follows less of the change, one measured after it more. How
+/// much is the point's *response*, 1 at the instant itself; without it the derivative of the world point is wrong.
 struct RigidMotion {
   static constexpr int kUnknowns = 6;
 

@@ -47,8 +47,8 @@ struct RegistrationParameters {
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.1;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
-  /// Directions with less information per correspondence than this are weak: the guess is kept along them.
-  /// 1/6 is the average direction; [0, 0.1], 0 follows every direction.
+  /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
+  /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.
   double weak_threshold = 1e-4;
 };
 

@@ -29,7 +29,7 @@ struct WeakDirection {
   /// Unit direction in (translation, rotation) about the sensor's position, in the world's axes; rotation
   /// components are scaled by the scene's size, so that both are metres of displacement of a typical point.
   Vector6 direction = Vector6::Zero();
-  double eigenvalue = 0.0;  ///< of the information per correspondence, in [0,1]; 1/6 is the average
+  double eigenvalue = 0.0;  ///< of the scaled information over the sum of the weights; 0.1 to 1 where well constrained
 };
 
 /// The outcome of one registration.
