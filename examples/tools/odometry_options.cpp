@@ -109,6 +109,7 @@ void addCompensationOptions(CLI::App& app, OdometryOptions& o)
   addChoice(app, "--compensation", o.parameters.compensation,
             {{"two-stage", CompensationMode::two_stage},
              {"loam", CompensationMode::iterative},
+             {"continuous", CompensationMode::continuous},
              {"none", CompensationMode::none}},
             "how the sweep's distortion is undone; none for scans that\n"
             "are compensated already (KITTI odometry benchmark)");

@@ -10,6 +10,7 @@ const char* toString(CompensationMode mode)
     case CompensationMode::none: return "none";
     case CompensationMode::two_stage: return "two-stage";
     case CompensationMode::iterative: return "loam";
+    case CompensationMode::continuous: return "continuous";
   }
   return "unknown";
 }

@@ -69,4 +69,38 @@ double PredictionError::bound(double periods) const
   return std::min(kFarthest, 3.0 * std::sqrt(squared_) * std::max(1.0, periods));
 }
 
+void VelocityNoise::observe(const Vector6& change, double periods)
+{
+  if (!(periods > 0.0)) {
+    return;
+  }
+  constexpr double kForgetting = 0.8;  // about five scans of memory
+  translation_ = kForgetting * translation_ + (1.0 - kForgetting) * change.head<3>().squaredNorm() / (3.0 * periods);
+  rotation_ = kForgetting * rotation_ + (1.0 - kForgetting) * change.tail<3>().squaredNorm() / (3.0 * periods);
+}
+
+MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twist, double periods,
+                                 double sweep_fraction) const
+{
+  // The floors let a motion begin after a long rest.
+  constexpr double kLeastChange = 0.01;  // m per period
+  constexpr double kLeastTurn = 0.005;   // rad per period
+  constexpr double kPoseSpread = 0.3;    // m
+  constexpr double kPoseRotation = 0.1;  // rad
+  const auto spread = [&](double pose, double noise) {
+    MotionPrior::Spread result;
+    const double slope = sweep_fraction / periods;  // a pose further on by 1 was reached with a twist larger by this
+    result.pose = pose * pose * periods;
+    result.common = slope * result.pose;
+    result.twist = slope * slope * result.pose + sweep_fraction * sweep_fraction * noise * periods;
+    return result;
+  };
+  MotionPrior prior;
+  prior.pose = predicted;
+  prior.twist = sweep_twist;
+  prior.translation = spread(kPoseSpread, std::max(translation_, kLeastChange * kLeastChange));
+  prior.rotation = spread(kPoseRotation, std::max(rotation_, kLeastTurn * kLeastTurn));
+  return prior;
+}
+
 }  // namespace pcl_floam

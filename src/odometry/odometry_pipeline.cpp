@@ -1,5 +1,6 @@
 #include "common/parameter_check.h"
 #include "odometry/constant_velocity.h"
+#include "odometry/first_motion.h"
 #include "odometry/stopwatch.h"
 #include "odometry/vertical_correction.h"
 
@@ -56,21 +57,6 @@ double typicalRange(const FeatureSet& features)
   return features.planes.empty() ? 1.0 : std::sqrt(sum / static_cast<double>(features.planes.size()));
 }
 
-/// About two thousand of the features, evenly taken.
-FeatureSet sampleOf(const FeatureSet& features)
-{
-  constexpr std::size_t kWanted = 1000;  // of each kind
-  FeatureSet sample;
-  const auto take = [](const std::vector<Feature>& from, std::vector<Feature>& to) {
-    for (std::size_t i = 0; i < from.size(); i += 1 + from.size() / kWanted) {
-      to.push_back(from[i]);
-    }
-  };
-  take(features.edges, sample.edges);
-  take(features.planes, sample.planes);
-  return sample;
-}
-
 }  // namespace
 
 /// Within the pipeline, every pose is the sensor's at \ref kReference of its sweep. Other instants are derived when
@@ -83,6 +69,7 @@ struct OdometryPipeline::Impl {
   ScanClock clock;
   ConstantVelocity velocity;
   PredictionError prediction_error;
+  VelocityNoise velocity_noise;
   SE3 initial_pose;      ///< of the first scan, at the instant of the parameters
   SE3 world_T_last;      ///< last scan, tracked or predicted
   SE3 world_T_tracked;   ///< last tracked scan
@@ -112,10 +99,13 @@ struct OdometryPipeline::Impl {
     if (!started) {
       return start();
     }
+    if (!velocity.isKnown() && !findFirstMotion()) {
+      return startAgain();
+    }
     predictMotion();
     estimatePose();
     if (!report.registration.hasConverged()) {
-      return velocity.isKnown() ? predictOnly(toString(report.registration.termination)) : startAgain();
+      return predictOnly(toString(report.registration.termination));
     }
     updateMap();
     return finish(TrackingState::tracked);
@@ -165,43 +155,54 @@ struct OdometryPipeline::Impl {
   void predictMotion() { world_T_predicted = world_T_last * velocity.motion(periods); }
 
   // Distortion Compensation, both stages (Eq. 3, 4 with the predicted motion, Eq. 12 with the optimised one)
-  void compensate(const FeatureSet& features, const Vector6& twist_per_period, FeatureSet& result)
+  void compensate(const FeatureSet& features, const Vector6& sweep_twist, FeatureSet& result)
   {
-    const bool moving = parameters.compensation != CompensationMode::none && timing.valid();
-    const Vector6 twist = moving ? Vector6(sweep_fraction * twist_per_period) : Vector6(Vector6::Zero());
-    pcl_floam::compensate(features, SweepMotion(twist, kReference), result);
+    pcl_floam::compensate(features, SweepMotion(sweep_twist, kReference), result);
   }
 
   // Pose Estimation (Eq. 5 to 14)
   void estimatePose()
   {
-    if (!velocity.isKnown()) {
-      estimateFirstMotion();
-      return;
-    }
-    compensate(measured, velocity.twist(), undistorted);
-    report.milliseconds.compensation += watch.lap();
-    report.registration = registerScan(world_T_predicted, prediction_error.bound(periods_since_tracked));
+    report.registration = registerScan(world_T_predicted);
     report.milliseconds.registration += watch.lap();
   }
 
-  RegistrationReport registerScan(const SE3& guess, double guess_uncertainty)
+  RegistrationReport registerScan(const SE3& guess)
   {
     RegistrationRun run;
     run.guess = guess;
-    run.guess_uncertainty = guess_uncertainty;
+    run.guess_uncertainty = prediction_error.bound(periods_since_tracked);
     run.threads = parameters.threads;
-    // Not before the first motion is known: the map is then distorted as the scan is, and must stay so.
-    if (parameters.compensation == CompensationMode::iterative && velocity.isKnown()) {
-      run.recompensate = [this](const SE3& world_T_sensor, FeatureSet& source) {
-        compensate(measured, twistTo(world_T_sensor), source);
-      };
-      const bool held = timing.valid() && periods_since_tracked > 0.0;
-      run.reference = kReference;
-      run.response_slope = held ? sweep_fraction / periods_since_tracked : 0.0;
-    }
+    run.sweep = sweepModel(guess);
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    return registerFeatures(undistorted, target, run, parameters.registration);
+    return registerFeatures(measured, target, run, parameters.registration);
+  }
+
+  /// Distortion Compensation, first stage: what the registration may assume of the motion (Eq. 3).
+  [[nodiscard]] SweepModel sweepModel(const SE3& guess) const
+  {
+    SweepModel sweep;
+    sweep.reference = kReference;
+    sweep.twist = compensatedFraction() * velocity.twist();
+    if (compensatedFraction() == 0.0 || periods_since_tracked <= 0.0) {
+      return sweep;
+    }
+    if (parameters.compensation == CompensationMode::iterative) {
+      sweep.freedom = SweepFreedom::follows_pose;
+      sweep.held_pose = world_T_tracked;
+      sweep.sweep_per_motion = sweep_fraction / periods_since_tracked;
+    }
+    if (parameters.compensation == CompensationMode::continuous) {
+      sweep.freedom = SweepFreedom::free;
+      sweep.prior = velocity_noise.prior(guess, sweep.twist, periods_since_tracked, sweep_fraction);
+    }
+    return sweep;
+  }
+
+  /// The part of a period during which the sweep moves; 0 where that is not to be compensated.
+  [[nodiscard]] double compensatedFraction() const
+  {
+    return parameters.compensation != CompensationMode::none && timing.valid() ? sweep_fraction : 0.0;
   }
 
   /// Motion per period from the last tracked scan to a pose (Eq. 12a).
@@ -213,33 +214,39 @@ struct OdometryPipeline::Impl {
     return log(world_T_tracked.inverse() * world_T_sensor) / periods_since_tracked;
   }
 
-  /// The second scan: neither its motion nor the first one's is known, so that the map, too, is distorted. Both are
-  /// compensated and registered in turn until they agree; from then on prediction is possible.
-  void estimateFirstMotion()
+  /// Motion per period after the registration (Eq. 12a).
+  ///
+  /// The motion between two poses is the velocity of half a period ago; the twist of the sweep is that of now, but
+  /// noisier. Their mean is the better prediction.
+  [[nodiscard]] Vector6 optimizedTwist() const
   {
-    constexpr int kMaxRounds = 8;
-    constexpr double kFarthestStart = 4.0;  // m: 144 km/h at 10 Hz
-    double uncertainty = kFarthestStart;
-    Vector6 twist = Vector6::Zero();
-    for (int round = 0; round < kMaxRounds; ++round) {
-      placeFirstScan(twist);
-      // The wide search of the first round is costly, and a part of the features does for a rough estimate.
-      compensate(round == 0 ? sampleOf(measured) : measured, twist, undistorted);
-      report.milliseconds.compensation += watch.lap();
-      report.registration = registerScan(world_T_tracked * exp(periods_since_tracked * twist), uncertainty);
-      report.milliseconds.registration += watch.lap();
-      if (!report.registration.hasConverged()) {
-        return;
-      }
-      const Vector6 estimate = twistTo(report.registration.target_T_source);
-      const double change = (estimate - twist).norm();
-      twist = estimate;
-      uncertainty = 0.0;
-      if (round > 0 && (change < 1e-3 || parameters.compensation == CompensationMode::none)) {
-        break;
-      }
+    const Vector6 between = twistTo(report.registration.target_T_source);
+    if (parameters.compensation == CompensationMode::continuous && compensatedFraction() > 0.0) {
+      return 0.5 * between + 0.5 / sweep_fraction * report.registration.sweep_twist;
     }
-    world_T_predicted = report.registration.target_T_source;
+    return between;
+  }
+
+  /// Motion over the sweep, for the second stage of the compensation.
+  [[nodiscard]] Vector6 optimizedSweepTwist() const
+  {
+    return parameters.compensation == CompensationMode::continuous ? report.registration.sweep_twist
+                                                                   : Vector6(compensatedFraction() * velocity.twist());
+  }
+
+  /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
+  /// \return false when they can't be found
+  bool findFirstMotion()
+  {
+    const FirstScans scans{first, measured, std::max(periods_since_tracked, 1e-3), compensatedFraction(), kReference};
+    const auto twist = pcl_floam::findFirstMotion(scans, parameters, report.registration);
+    if (twist) {
+      velocity.set(*twist);
+      placeFirstScan(*twist);
+      world_T_last = world_T_tracked;
+    }
+    report.milliseconds.registration += watch.lap();
+    return twist.has_value();
   }
 
   /// (Re)builds the map from the first scan, given its motion. Its pose at the instant of the parameters stays what it
@@ -248,7 +255,7 @@ struct OdometryPipeline::Impl {
   {
     map.clear();
     FeatureSet compensated;
-    compensate(first, twist, compensated);
+    compensate(first, compensatedFraction() * twist, compensated);
     world_T_tracked = initial_pose * instantToReference(twist);
     world_T_keyframe = world_T_tracked;
     map.insert(compensated, world_T_tracked);
@@ -266,15 +273,17 @@ struct OdometryPipeline::Impl {
   void updateMap()
   {
     const SE3& optimized = report.registration.target_T_source;
-    prediction_error.observe(world_T_predicted.inverse() * optimized, typicalRange(undistorted));
+    prediction_error.observe(world_T_predicted.inverse() * optimized, typicalRange(measured));
     if (periods_since_tracked > 0.0) {
-      velocity.set(twistTo(optimized));
+      const Vector6 twist = optimizedTwist();
+      velocity_noise.observe(twist - velocity.twist(), periods_since_tracked);
+      velocity.set(twist);
     }
     world_T_last = world_T_tracked = optimized;
     periods_since_tracked = 0.0;
     report.keyframe = parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
     if (report.keyframe) {
-      compensate(measured, velocity.twist(), undistorted);
+      compensate(measured, optimizedSweepTwist(), undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, optimized);
       world_T_keyframe = optimized;

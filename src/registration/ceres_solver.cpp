@@ -1,7 +1,5 @@
 #include "registration/ceres_solver.h"
 
-#include "registration/motion_model.h"
-
 #include <ceres/ceres.h>
 
 #include <memory>
@@ -52,29 +50,39 @@ Eigen::Matrix3d rotationJacobian(const Eigen::Vector3d& phi)
   return sum;
 }
 
-/// A factor's residual as a function of delta = (translation, rotation vector): q' = R(delta) q + t(delta).
+/// d(R(phi) q + t)/d(t, phi).
+Eigen::Matrix<double, 3, 6> motionDerivative(const Eigen::Vector3d& rotated, const Eigen::Vector3d& phi)
+{
+  Eigen::Matrix<double, 3, 6> derivative;
+  derivative << Eigen::Matrix3d::Identity(), -skew(rotated) * rotationJacobian(phi);
+  return derivative;
+}
+
+/// A factor's residual as a function of two perturbations (translation, rotation vector) of pose and twist, of which
+/// the point follows its shares: q' = R(d) q + t(d), d = pose_share * pose + twist_share * twist.
 template <typename Factor>
-class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6> {
+class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6, 6> {
 public:
-  PerturbationCost(const Factor& factor, Eigen::Vector3d point, double response)
-      : factor_(factor), point_(std::move(point)), response_(response)
+  PerturbationCost(const Correspondence<Factor>& correspondence, double pose_share, double twist_share)
+      : factor_(correspondence.factor), point_(correspondence.point), share_{pose_share, twist_share}
   {
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
   {
-    const Eigen::Map<const Eigen::Vector3d> translation(parameters[0]);
-    const Eigen::Vector3d phi = response_ * Eigen::Map<const Eigen::Vector3d>(parameters[0] + 3);
+    const Eigen::Map<const Vector6> pose(parameters[0]);
+    const Eigen::Map<const Vector6> twist(parameters[1]);
+    const Vector6 perturbation = share_[0] * pose + share_[1] * twist;
+    const Eigen::Vector3d phi = perturbation.tail<3>();
     const Eigen::Vector3d rotated = expSO3(phi) * point_;
     Eigen::Map<Eigen::Matrix<double, Factor::kResiduals, 1>> residual(residuals);
-    residual = factor_.residual(rotated + response_ * translation);
-    if (jacobians != nullptr && jacobians[0] != nullptr) {
-      Eigen::Matrix<double, 3, 6> motion = RigidMotion::derivative(rotated, response_);
-      motion.rightCols<3>() = (motion.rightCols<3>() * rotationJacobian(phi)).eval();
-      const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian = factor_.derivative() * motion;
-      for (int row = 0; row < Factor::kResiduals; ++row) {
-        for (int column = 0; column < 6; ++column) {
-          jacobians[0][row * 6 + column] = jacobian(row, column);
+    residual = factor_.residual(rotated + perturbation.head<3>());
+    for (int block = 0; jacobians != nullptr && block < 2; ++block) {
+      if (jacobians[block] != nullptr) {
+        const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
+            share_[block] * factor_.derivative() * motionDerivative(rotated, phi);
+        for (int row = 0; row < Factor::kResiduals; ++row) {
+          Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[block] + row * 6) = jacobian.row(row);
         }
       }
     }
@@ -83,34 +91,75 @@ public:
 
 private:
   Factor factor_;
-  Eigen::Vector3d point_;  ///< in the target's axes, relative to the local origin, at delta = 0
-  double response_;        ///< how much of delta the point follows
+  Eigen::Vector3d point_;  ///< without perturbation
+  double share_[2];        ///< of the pose's and of the twist's perturbation
+};
+
+/// The motion prior as residuals: its information's root times the distance from it.
+class PriorCost : public ceres::SizedCostFunction<12, 6, 6> {
+public:
+  explicit PriorCost(const MotionPriorTerm& term) : root_(term.information.llt().matrixU()), error_(term.error) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
+  {
+    Eigen::Matrix<double, 12, 1> change;
+    change << Eigen::Map<const Vector6>(parameters[0]), Eigen::Map<const Vector6>(parameters[1]);
+    Eigen::Map<Eigen::Matrix<double, 12, 1>>(residuals, 12) = root_ * (error_ + change);
+    for (int block = 0; jacobians != nullptr && block < 2; ++block) {
+      if (jacobians[block] != nullptr) {
+        Eigen::Map<Eigen::Matrix<double, 12, 6, Eigen::RowMajor>>(jacobians[block], 12, 6) =
+            root_.middleCols<6>(6 * block);
+      }
+    }
+    return true;
+  }
+
+private:
+  Eigen::Matrix<double, 12, 12> root_;
+  Eigen::Matrix<double, 12, 1> error_;
 };
 
 template <typename Factor>
-void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, const SE3& local_T_sensor,
-                  ceres::LossFunction* loss, double* delta, ceres::Problem& ceres_problem)
+void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, const SweepModel& model,
+                  ceres::LossFunction* loss, SweepStep& step, ceres::Problem& ceres_problem)
 {
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
-      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c.factor, local_T_sensor * c.point, c.response),
-                                     new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP), delta);
+      const bool follows = model.freedom == SweepFreedom::follows_pose;
+      const double pose_share = follows ? 1.0 + model.sweep_per_motion * c.since_reference : 1.0;
+      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, pose_share, c.since_reference),
+                                     new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP),
+                                     step.pose.data(), step.twist.data());
     }
   }
 }
 
+/// The perturbation's rotation vector is exp's, its translation is applied after it: the twist of the same motion.
+Vector6 asTwist(const Vector6& perturbation)
+{
+  return log(SE3(expSO3(perturbation.tail<3>()), perturbation.head<3>()));
+}
+
 }  // namespace
 
-Vector6 solveWithCeres(const RegistrationProblem& problem, const SE3& local_T_sensor,
-                       const Correspondences& correspondences, const KernelScales& scales)
+SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
+                         const Correspondences& correspondences, const KernelScales& scales,
+                         const std::optional<MotionPriorTerm>& prior)
 {
   // The losses must outlive the problem, which only borrows them.
   const auto edge_loss = makeLoss(problem.parameters.kernel, scales.edge);
   const auto plane_loss = makeLoss(problem.parameters.kernel, scales.plane);
-  double delta[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  SweepStep perturbation;
   ceres::Problem ceres_problem;
-  addResiduals(correspondences.edges, local_T_sensor, edge_loss.get(), delta, ceres_problem);
-  addResiduals(correspondences.planes, local_T_sensor, plane_loss.get(), delta, ceres_problem);
+  ceres_problem.AddParameterBlock(perturbation.pose.data(), 6);
+  ceres_problem.AddParameterBlock(perturbation.twist.data(), 6);
+  if (prior) {
+    ceres_problem.AddResidualBlock(new PriorCost(*prior), nullptr, perturbation.pose.data(), perturbation.twist.data());
+  } else {
+    ceres_problem.SetParameterBlockConstant(perturbation.twist.data());
+  }
+  addResiduals(correspondences.edges, model, edge_loss.get(), perturbation, ceres_problem);
+  addResiduals(correspondences.planes, model, plane_loss.get(), perturbation, ceres_problem);
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
@@ -120,12 +169,9 @@ Vector6 solveWithCeres(const RegistrationProblem& problem, const SE3& local_T_se
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   if (!summary.IsSolutionUsable()) {
-    return Vector6::Zero();
+    return {};
   }
-  // The rotation vector is exp's; the translation is applied after it: convert to the twist of the same motion.
-  const Eigen::Map<const Eigen::Vector3d> translation(delta);
-  const Eigen::Vector3d phi = Eigen::Map<const Eigen::Vector3d>(delta + 3);
-  return log(SE3(expSO3(phi), translation));
+  return {asTwist(perturbation.pose), asTwist(perturbation.twist)};
 }
 
 }  // namespace pcl_floam

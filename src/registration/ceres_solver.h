@@ -4,12 +4,17 @@
 
 #include "registration/correspondences.h"
 #include "registration/normal_equations.h"
+#include "registration/sweep_step.h"
+
+#include <optional>
 
 namespace pcl_floam {
 
-/// The left perturbation that minimises the robust weighted cost (Eq. 10) of fixed correspondences, by Ceres.
+/// The step that minimises the robust weighted cost (Eq. 10) of fixed correspondences, by Ceres.
 /// Zero if Ceres finds no usable solution.
-[[nodiscard]] Vector6 solveWithCeres(const RegistrationProblem& problem, const SE3& local_T_sensor,
-                                     const Correspondences& correspondences, const KernelScales& scales);
+/// \param prior of a sweep whose twist is estimated, too; without one only the pose moves
+[[nodiscard]] SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
+                                       const Correspondences& correspondences, const KernelScales& scales,
+                                       const std::optional<MotionPriorTerm>& prior);
 
 }  // namespace pcl_floam

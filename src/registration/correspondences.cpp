@@ -50,8 +50,9 @@ void findOne(const RegistrationProblem& problem, const NeighborSearch& search, i
 
 template <typename Factor, typename Fit>
 void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature>& features,
-                   const std::vector<double>& weights, const NeighborSearch& search, int k, const SE3& local_T_sensor,
-                   double search_radius, const Fit& fit, std::vector<Correspondence<Factor>>& correspondences)
+                   const std::vector<double>& weights, const NeighborSearch& search, int k,
+                   const SweepTrajectory& trajectory, double search_radius, const Fit& fit,
+                   std::vector<Correspondence<Factor>>& correspondences)
 {
   correspondences.resize(features.size());
   // Each iteration writes its own element only: the result does not depend on who computes what.
@@ -60,9 +61,9 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
     const auto i = static_cast<std::size_t>(n);
     const Feature& feature = features[i];
     Correspondence<Factor>& correspondence = correspondences[i];
-    correspondence.point = Eigen::Vector3d(feature.x, feature.y, feature.z);
-    correspondence.response = 1.0 + problem.response_slope * (feature.time - problem.reference);
-    const Eigen::Vector3d local = local_T_sensor * correspondence.point;
+    const Eigen::Vector3d local = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
+    correspondence.point = local;
+    correspondence.since_reference = trajectory.sinceReference(feature.time);
     if ((local - correspondence.searched_at).norm() >= correspondence.valid_within) {
       findOne(problem, search, k, local, weights[i], search_radius, fit, correspondence);
     }
@@ -73,12 +74,12 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
 
 void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& source,
                          const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
-                         const SE3& local_T_sensor, double search_radius, Correspondences& correspondences)
+                         const SweepTrajectory& trajectory, double search_radius, Correspondences& correspondences)
 {
   findOfOneKind(problem, source.edges, edge_weights, *problem.target.edges, problem.parameters.edge_neighbors,
-                local_T_sensor, search_radius, fitLine, correspondences.edges);
+                trajectory, search_radius, fitLine, correspondences.edges);
   findOfOneKind(problem, source.planes, plane_weights, *problem.target.planes, problem.parameters.plane_neighbors,
-                local_T_sensor, search_radius, fitPlane, correspondences.planes);
+                trajectory, search_radius, fitPlane, correspondences.planes);
 }
 
 }  // namespace pcl_floam

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "registration/factors.h"
+#include "registration/sweep_trajectory.h"
 
-#include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/registration/feature_registration.h>
 #include <pcl_floam/registration/registration_parameters.h>
@@ -20,10 +20,10 @@ namespace pcl_floam {
 /// factor is kept as it is: with it the registration of an HDL-64 scan took 17 ms in place of 28, same trajectory.
 template <typename Factor>
 struct Correspondence {
-  Eigen::Vector3d point;  ///< in the sensor's frame
-  Factor factor;          ///< in the target's axes, relative to the local origin
-  double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
-  double response = 1.0;  ///< how much of the pose's motion the point follows (motion_model.h)
+  Eigen::Vector3d point;         ///< now, in the target's axes, relative to the local origin
+  Factor factor;                 ///< in the same frame
+  double weight = 0.0;           ///< W of Eq. 9; 0 where no line or plane was found
+  double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
   Eigen::Vector3d searched_at = Eigen::Vector3d::Zero();  ///< where the neighbours were searched, as the factor
   double valid_within = 0.0;  ///< m from there: nearer than this the neighbours are the same
 };
@@ -42,16 +42,14 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
-  double response_slope = 0.0;  ///< see RegistrationRun
-  double reference = 1.0;
 };
 
-/// Finds the line of each edge feature and the plane of each plane feature.
-/// \param local_T_sensor pose relative to the problem's origin
-/// \param search_radius  m: the farthest neighbour used must be nearer
+/// Moves the features along the trajectory, and finds the line of each edge and the plane of each plane feature.
+/// \param trajectory    relative to the problem's origin
+/// \param search_radius m: the farthest neighbour used must be nearer
 /// \param[in,out] correspondences those of the last iteration of the same problem and source, or empty
 void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& source,
                          const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
-                         const SE3& local_T_sensor, double search_radius, Correspondences& correspondences);
+                         const SweepTrajectory& trajectory, double search_radius, Correspondences& correspondences);
 
 }  // namespace pcl_floam

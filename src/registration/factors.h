@@ -2,7 +2,7 @@
 /// Residuals and their derivatives by the world point (Eq. 5 to 7, 13, 14).
 ///
 /// A factor knows nothing of poses: how the world point depends on the unknowns is the motion model's business
-/// (motion_model.h). Gauss-Newton and Ceres use these same functions.
+/// (sweep_trajectory.h). Gauss-Newton and Ceres use these same functions.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,6 +25,7 @@ struct EdgeFactor {
     const Eigen::Vector3d difference = point - center;
     return difference - direction * direction.dot(difference);
   }
+  [[nodiscard]] double squaredResidual(const Eigen::Vector3d& point) const { return residual(point).squaredNorm(); }
   [[nodiscard]] Eigen::Matrix3d derivative() const
   {
     return Eigen::Matrix3d::Identity() - direction * direction.transpose();
@@ -41,6 +42,7 @@ struct PlaneFactor {
   {
     return Eigen::Matrix<double, 1, 1>(normal.dot(point - center));
   }
+  [[nodiscard]] double squaredResidual(const Eigen::Vector3d& point) const { return residual(point).squaredNorm(); }
   [[nodiscard]] Eigen::RowVector3d derivative() const { return normal.transpose(); }
 };
 

@@ -4,10 +4,12 @@
 #include "registration/correspondences.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
+#include "registration/sweep_step.h"
 #include "registration/weights.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace pcl_floam {
 
@@ -16,12 +18,12 @@ namespace {
 /// One registration in progress.
 class PoseEstimation {
 public:
-  PoseEstimation(FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
+  PoseEstimation(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
                  const RegistrationParameters& parameters)
       : source_(source),
-        run_(run),
-        problem_{target, parameters, run.guess.translation, run.threads, run.response_slope, run.reference},
-        local_T_sensor_(run.guess.rotation, Eigen::Vector3d::Zero()),
+        model_(localModel(run)),
+        problem_{target, parameters, run.guess.translation, run.threads},
+        trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
         edge_weights_(
             smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization)),
@@ -43,18 +45,36 @@ public:
   }
 
 private:
-  [[nodiscard]] SE3 pose() const { return {local_T_sensor_.rotation, local_T_sensor_.translation + problem_.origin}; }
+  /// The sweep's model with its poses relative to the problem's origin.
+  static SweepModel localModel(const RegistrationRun& run)
+  {
+    SweepModel model = run.sweep;
+    model.held_pose.translation -= run.guess.translation;
+    model.prior.pose.translation -= run.guess.translation;
+    return model;
+  }
+
+  static SweepTrajectory startOf(const SweepModel& model, const SE3& local_T_sensor)
+  {
+    if (model.freedom == SweepFreedom::follows_pose) {
+      const Vector6 motion = log(model.held_pose.inverse() * local_T_sensor);
+      return {local_T_sensor, model.sweep_per_motion * motion, model.reference};
+    }
+    return {local_T_sensor, model.twist, model.reference};
+  }
+
+  [[nodiscard]] SE3 pose() const
+  {
+    return {trajectory_.pose().rotation, trajectory_.pose().translation + problem_.origin};
+  }
 
   /// One iteration of the pose estimation: fresh correspondences, one step. \return true when it is over
   bool iterate()
   {
-    if (run_.recompensate) {
-      run_.recompensate(pose(), source_);
-    }
-    findCorrespondences(problem_, source_, edge_weights_, plane_weights_, local_T_sensor_, search_radius_,
+    findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_,
                         correspondences_);
-    const KernelScales scales = adaptKernelScales(problem_, local_T_sensor_, correspondences_);
-    equations_ = buildNormalEquations(problem_, local_T_sensor_, correspondences_, scales);
+    const KernelScales scales = adaptKernelScales(problem_, correspondences_);
+    equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
     ++report_.iterations;
     if (equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
       report_.termination = Termination::too_few_correspondences;
@@ -63,30 +83,41 @@ private:
     return take(solve(scales));
   }
 
-  [[nodiscard]] Vector6 solve(const KernelScales& scales) const
+  [[nodiscard]] SweepStep solve(const KernelScales& scales) const
   {
+    const InformationAnalysis analysis(equations_, problem_.parameters.weak_threshold);
+    const bool free = model_.freedom == SweepFreedom::free;
     if (problem_.parameters.solver == SolverKind::ceres) {
-      return solveWithCeres(problem_, local_T_sensor_, correspondences_, scales);
+      std::optional<MotionPriorTerm> prior;
+      if (free) {
+        prior = motionPriorTerm(model_.prior, trajectory_, independentVariance(analysis));
+      }
+      return solveWithCeres(problem_, model_, correspondences_, scales, prior);
     }
-    return InformationAnalysis(equations_, problem_.parameters.weak_threshold).step();
+    if (free) {
+      return FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).step();
+    }
+    return {analysis.step(), Vector6::Zero()};
   }
 
   /// Applies a step on the left (Eq. 11). \return true when the iterations are over
-  bool take(const Vector6& step)
+  bool take(const SweepStep& step)
   {
-    if (!step.allFinite()) {
+    if (!step.isFinite()) {
       report_.termination = Termination::degenerate;
       return true;
     }
-    local_T_sensor_ = exp(step) * local_T_sensor_;
-    local_T_sensor_.rotation = nearestRotation(local_T_sensor_.rotation);
+    trajectory_ = trajectory_.perturbed(step.pose, step.twist);
+    if (model_.freedom == SweepFreedom::follows_pose) {
+      trajectory_ = startOf(model_, trajectory_.pose());
+    }
     const bool searched_wide = search_radius_ > problem_.parameters.max_neighbor_distance;
     if (searched_wide) {
       search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
       correspondences_ = Correspondences();  // they were found within the wider radius
     }
-    const bool small = step.head<3>().norm() < problem_.parameters.translation_epsilon &&
-                       step.tail<3>().norm() < problem_.parameters.rotation_epsilon;
+    const bool small = step.pose.head<3>().norm() < problem_.parameters.translation_epsilon &&
+                       step.pose.tail<3>().norm() < problem_.parameters.rotation_epsilon;
     if (small && !searched_wide) {
       report_.termination = Termination::converged;
     }
@@ -110,15 +141,18 @@ private:
     report_.cost = equations_.cost;
     report_.residual_rms = std::sqrt(equations_.weighted_squares / equations_.weight);
     report_.information = equations_.information;
-    report_.covariance = analysis.covariance();
+    report_.sweep_twist = trajectory_.twist();
+    report_.covariance = model_.freedom == SweepFreedom::free
+                             ? FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).poseCovariance()
+                             : analysis.covariance();
     report_.weak_directions = analysis.weakDirections();
     return report_;
   }
 
-  FeatureSet& source_;
-  const RegistrationRun& run_;
+  const FeatureSet& source_;
+  SweepModel model_;
   RegistrationProblem problem_;
-  SE3 local_T_sensor_;  ///< the present estimate, relative to the problem's origin
+  SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin
   double search_radius_;
   std::vector<double> edge_weights_;
   std::vector<double> plane_weights_;
@@ -129,7 +163,7 @@ private:
 
 }  // namespace
 
-RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
+RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
                                     const RegistrationParameters& parameters)
 {
   RegistrationReport report;

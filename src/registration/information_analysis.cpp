@@ -32,7 +32,7 @@ Vector6 InformationAnalysis::step() const
   const Vector6 projected = eigenvectors_.transpose() * scale_.asDiagonal() * equations_.gradient;
   Vector6 solution = Vector6::Zero();
   for (int i = 0; i < 6; ++i) {
-    if (eigenvalues_[i] >= weak_threshold_ && eigenvalues_[i] > 0.0) {
+    if (!isWeak(i)) {
       solution -= projected[i] / (eigenvalues_[i] * equations_.weight) * eigenvectors_.col(i);
     }
   }
@@ -42,9 +42,19 @@ Vector6 InformationAnalysis::step() const
 Matrix6 InformationAnalysis::covariance() const
 {
   const Vector6 inverse = (eigenvalues_.array().max(kNoInformation) * equations_.weight).inverse().matrix();
-  const double variance = equations_.weighted_squares / equations_.weight;
   const Matrix6 vectors = scale_.asDiagonal() * eigenvectors_;
-  return variance * (vectors * inverse.asDiagonal() * vectors.transpose());
+  return residualVariance() * (vectors * inverse.asDiagonal() * vectors.transpose());
+}
+
+Matrix6 InformationAnalysis::strongProjection() const
+{
+  Matrix6 strong = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (!isWeak(i)) {
+      strong += eigenvectors_.col(i) * eigenvectors_.col(i).transpose();
+    }
+  }
+  return scale_.asDiagonal() * strong * scale_.cwiseInverse().asDiagonal();
 }
 
 std::vector<WeakDirection> InformationAnalysis::weakDirections() const

@@ -26,7 +26,15 @@ public:
 
   [[nodiscard]] std::vector<WeakDirection> weakDirections() const;
 
+  /// What is left of a perturbation without its part along weak directions: P of Zhang and Singh.
+  [[nodiscard]] Matrix6 strongProjection() const;
+
+  /// Weighted mean of the squared residuals, m^2.
+  [[nodiscard]] double residualVariance() const { return equations_.weighted_squares / equations_.weight; }
+
 private:
+  [[nodiscard]] bool isWeak(int i) const { return eigenvalues_[i] < weak_threshold_ || !(eigenvalues_[i] > 0.0); }
+
   const NormalEquations& equations_;
   double weak_threshold_;
   Vector6 scale_;         ///< from scaled unknowns (all in m) to (m, rad)

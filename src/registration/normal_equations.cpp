@@ -1,10 +1,11 @@
 #include "registration/normal_equations.h"
 
-#include "registration/motion_model.h"
 #include "registration/robust_kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -17,96 +18,166 @@ constexpr std::size_t kChunk = 256;
 constexpr double kScalePerMedian = 3.0 * 1.4826;
 
 template <typename Factor>
-double medianResidual(const std::vector<Correspondence<Factor>>& correspondences, const SE3& local_T_sensor)
+double medianResidual(const std::vector<Correspondence<Factor>>& correspondences)
 {
-  std::vector<double> residuals;
-  residuals.reserve(correspondences.size());
+  std::vector<double> squares;
+  squares.reserve(correspondences.size());
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
-      residuals.push_back(c.factor.residual(local_T_sensor * c.point).norm());
+      squares.push_back(c.factor.squaredResidual(c.point));
     }
   }
-  if (residuals.empty()) {
+  if (squares.empty()) {
     return 0.0;
   }
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  return *middle;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::sqrt(*middle);
+}
+
+/// The sums of one chunk: upper triangles, row by row, so that the compiler can keep to straight lines.
+class ChunkSums {
+public:
+  /// One scalar residual r = n^T (q - c), whose derivative by the perturbation is J = n^T [I, -[q]x] (Eq. 11, 13, 14).
+  void add(const Eigen::Vector3d& q, const Eigen::Vector3d& n, double residual, double weight, double since_reference)
+  {
+    const std::array<double, 6> j = {n.x(),
+                                     n.y(),
+                                     n.z(),
+                                     q.y() * n.z() - q.z() * n.y(),
+                                     q.z() * n.x() - q.x() * n.z(),
+                                     q.x() * n.y() - q.y() * n.x()};
+    std::size_t k = 0;
+    for (std::size_t row = 0; row < 6; ++row) {
+      const double wj = weight * j[row];
+      const double swj = since_reference * wj;
+      const double sswj = since_reference * swj;
+      for (std::size_t column = row; column < 6; ++column, ++k) {
+        information_[k] += wj * j[column];
+        coupling_[k] += swj * j[column];
+        twist_information_[k] += sswj * j[column];
+      }
+      gradient_[row] += wj * residual;
+      twist_gradient_[row] += swj * residual;
+    }
+  }
+
+  void addTo(NormalEquations& sums) const
+  {
+    std::size_t k = 0;
+    for (int row = 0; row < 6; ++row) {
+      for (int column = row; column < 6; ++column, ++k) {
+        addSymmetric(information_[k], row, column, sums.information);
+        addSymmetric(coupling_[k], row, column, sums.coupling);
+        addSymmetric(twist_information_[k], row, column, sums.twist_information);
+      }
+      sums.gradient[row] += gradient_[static_cast<std::size_t>(row)];
+      sums.twist_gradient[row] += twist_gradient_[static_cast<std::size_t>(row)];
+    }
+    sums.cost += scalars.cost;
+    sums.weighted_squares += scalars.weighted_squares;
+    sums.weight += scalars.weight;
+    sums.squared_extent += scalars.squared_extent;
+    sums.edges += scalars.edges;
+    sums.planes += scalars.planes;
+    sums.edge_inliers += scalars.edge_inliers;
+    sums.plane_inliers += scalars.plane_inliers;
+  }
+
+  /// The sums that are not by direction.
+  struct Scalars {
+    double cost = 0.0;
+    double weighted_squares = 0.0;
+    double weight = 0.0;
+    double squared_extent = 0.0;
+    int edges = 0;
+    int planes = 0;
+    int edge_inliers = 0;
+    int plane_inliers = 0;
+  } scalars;
+
+private:
+  static void addSymmetric(double value, int row, int column, Matrix6& matrix)
+  {
+    matrix(row, column) += value;
+    if (row != column) {
+      matrix(column, row) += value;
+    }
+  }
+
+  std::array<double, 21> information_{};
+  std::array<double, 21> coupling_{};
+  std::array<double, 21> twist_information_{};
+  std::array<double, 6> gradient_{};
+  std::array<double, 6> twist_gradient_{};
+};
+
+void addRows(const Correspondence<PlaneFactor>& c, double weight, ChunkSums& sums)
+{
+  sums.add(c.point, c.factor.normal, c.factor.residual(c.point)[0], weight, c.since_reference);
+}
+
+/// The residual vector across the line as its two components: the third is zero.
+void addRows(const Correspondence<EdgeFactor>& c, double weight, ChunkSums& sums)
+{
+  const Eigen::Vector3d across = c.factor.direction.unitOrthogonal();
+  const Eigen::Vector3d difference = c.point - c.factor.center;
+  for (const Eigen::Vector3d& axis : {across, Eigen::Vector3d(c.factor.direction.cross(across))}) {
+    sums.add(c.point, axis, axis.dot(difference), weight, c.since_reference);
+  }
 }
 
 template <typename Factor>
-void accumulate(const Correspondence<Factor>& c, const SE3& local_T_sensor, RobustKernel kernel, double scale,
-                NormalEquations& sums, int& count, int& inliers)
+void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double scale, ChunkSums& sums, int& count,
+                int& inliers)
 {
   if (c.weight <= 0.0) {
     return;
   }
-  const Eigen::Vector3d point = local_T_sensor * c.point;
-  const auto residual = c.factor.residual(point);
-  const double squared = residual.squaredNorm();
+  const double squared = c.factor.squaredResidual(c.point);
   const double robust = robustWeight(kernel, squared, scale);
   const double weight = c.weight * robust;
-  // J = dr/d(Tp) d(Tp)/d(delta) (Eq. 13, 14)
-  const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
-      c.factor.derivative() * RigidMotion::derivative(point, c.response);
-  sums.information.noalias() += weight * jacobian.transpose() * jacobian;
-  sums.gradient.noalias() += weight * jacobian.transpose() * residual;
-  sums.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);
-  sums.weighted_squares += weight * squared;
-  sums.weight += weight;
-  sums.squared_extent += weight * point.squaredNorm();
+  addRows(c, weight, sums);
+  sums.scalars.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);
+  sums.scalars.weighted_squares += weight * squared;
+  sums.scalars.weight += weight;
+  sums.scalars.squared_extent += weight * c.point.squaredNorm();
   ++count;
   inliers += robust >= 0.5 ? 1 : 0;
 }
 
 }  // namespace
 
-NormalEquations& NormalEquations::operator+=(const NormalEquations& other)
-{
-  information += other.information;
-  gradient += other.gradient;
-  cost += other.cost;
-  weighted_squares += other.weighted_squares;
-  weight += other.weight;
-  squared_extent += other.squared_extent;
-  edges += other.edges;
-  planes += other.planes;
-  edge_inliers += other.edge_inliers;
-  plane_inliers += other.plane_inliers;
-  return *this;
-}
-
-KernelScales adaptKernelScales(const RegistrationProblem& problem, const SE3& local_T_sensor,
-                               const Correspondences& correspondences)
+KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences)
 {
   const double smallest = problem.parameters.kernel_scale;
-  return {std::max(smallest, kScalePerMedian * medianResidual(correspondences.edges, local_T_sensor)),
-          std::max(smallest, kScalePerMedian * medianResidual(correspondences.planes, local_T_sensor))};
+  return {std::max(smallest, kScalePerMedian * medianResidual(correspondences.edges)),
+          std::max(smallest, kScalePerMedian * medianResidual(correspondences.planes))};
 }
 
-NormalEquations buildNormalEquations(const RegistrationProblem& problem, const SE3& local_T_sensor,
-                                     const Correspondences& correspondences, const KernelScales& scales)
+NormalEquations buildNormalEquations(const RegistrationProblem& problem, const Correspondences& correspondences,
+                                     const KernelScales& scales)
 {
   const std::size_t edges = correspondences.edges.size();
   const std::size_t total = edges + correspondences.planes.size();
-  std::vector<NormalEquations> chunks((total + kChunk - 1) / kChunk);
+  std::vector<ChunkSums> chunks((total + kChunk - 1) / kChunk);
   const RobustKernel kernel = problem.parameters.kernel;
 #pragma omp parallel for num_threads(problem.threads) schedule(static)
   for (std::ptrdiff_t chunk = 0; chunk < static_cast<std::ptrdiff_t>(chunks.size()); ++chunk) {
-    NormalEquations& sums = chunks[static_cast<std::size_t>(chunk)];
+    ChunkSums& sums = chunks[static_cast<std::size_t>(chunk)];
+    auto& counts = sums.scalars;
     const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
     for (std::size_t i = first; i < std::min(first + kChunk, total); ++i) {
       if (i < edges) {
-        accumulate(correspondences.edges[i], local_T_sensor, kernel, scales.edge, sums, sums.edges, sums.edge_inliers);
+        accumulate(correspondences.edges[i], kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
       } else {
-        accumulate(correspondences.planes[i - edges], local_T_sensor, kernel, scales.plane, sums, sums.planes,
-                   sums.plane_inliers);
+        accumulate(correspondences.planes[i - edges], kernel, scales.plane, sums, counts.planes, counts.plane_inliers);
       }
     }
   }
   NormalEquations result;
-  for (const NormalEquations& sums : chunks) {
-    result += sums;
+  for (const ChunkSums& sums : chunks) {
+    sums.addTo(result);
   }
   return result;
 }

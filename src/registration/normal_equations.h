@@ -6,8 +6,6 @@
 
 #include <pcl_floam/common/se3.h>
 
-#include <vector>
-
 namespace pcl_floam {
 
 /// Scale of the robust kernel for each kind of residual, m.
@@ -18,27 +16,31 @@ struct KernelScales {
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
 /// parameters' `kernel_scale`.
-[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const SE3& local_T_sensor,
+[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
                                              const Correspondences& correspondences);
 
 /// Sums over all correspondences.
+///
+/// A point measured s after the pose's instant moves with a perturbation delta of the pose and epsilon of the twist
+/// over the sweep as delta + s epsilon: J is the derivative by the former, s J by the latter.
 struct NormalEquations {
-  Matrix6 information = Matrix6::Zero();  ///< H = sum w J^T J
-  Vector6 gradient = Vector6::Zero();     ///< b = sum w J^T r
-  double cost = 0.0;                      ///< half the sum of W rho(r^2), m^2
-  double weighted_squares = 0.0;          ///< sum w r^2, m^2
-  double weight = 0.0;                    ///< sum w
-  double squared_extent = 0.0;            ///< sum w |q|^2: spread of the points about the local origin, m^2
+  Matrix6 information = Matrix6::Zero();        ///< H = sum w J^T J
+  Matrix6 coupling = Matrix6::Zero();           ///< sum w s J^T J: of pose and twist
+  Matrix6 twist_information = Matrix6::Zero();  ///< sum w s^2 J^T J
+  Vector6 gradient = Vector6::Zero();           ///< b = sum w J^T r
+  Vector6 twist_gradient = Vector6::Zero();     ///< sum w s J^T r
+  double cost = 0.0;                            ///< half the sum of W rho(r^2), m^2
+  double weighted_squares = 0.0;                ///< sum w r^2, m^2
+  double weight = 0.0;                          ///< sum w
+  double squared_extent = 0.0;                  ///< sum w |q|^2: spread of the points about the local origin, m^2
   int edges = 0;
   int planes = 0;
   int edge_inliers = 0;
   int plane_inliers = 0;
-
-  NormalEquations& operator+=(const NormalEquations& other);
 };
 
 /// \return the sums, bit-identical for every number of threads: fixed chunks, added in order
-[[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem, const SE3& local_T_sensor,
+[[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem,
                                                    const Correspondences& correspondences, const KernelScales& scales);
 
 }  // namespace pcl_floam

@@ -7,8 +7,7 @@
 #include <pcl_floam/map/neighbor_search.h>
 #include <pcl_floam/registration/registration_parameters.h>
 #include <pcl_floam/registration/registration_report.h>
-
-#include <functional>
+#include <pcl_floam/registration/sweep_model.h>
 
 namespace pcl_floam {
 
@@ -25,22 +24,16 @@ struct RegistrationRun {
   /// down to `max_neighbor_distance`. 0 uses the latter throughout.
   double guess_uncertainty = 0.0;
   int threads = 1;
-  /// LOAM's iterative compensation: called before each iteration with the present pose, to undistort the source
-  /// anew. Must keep the features' number and order. Empty: the source stays as it is.
-  std::function<void(const SE3& target_T_source, FeatureSet& source)> recompensate;
-  /// With `recompensate`: by how much more of a change of the pose a point at the sweep's end follows than one at its
-  /// start, while one at `reference` follows all of it. 0 (the default) if the sweep moves as one.
-  double response_slope = 0.0;
-  double reference = 1.0;  ///< with `recompensate`: the instant of the pose, as a fraction of the sweep
+  SweepModel sweep;  ///< default: the source is not distorted
 };
 
 /// Estimates the pose of a scan's features in a map by minimising the weighted point-to-line and point-to-plane
 /// distances (Eq. 10), with fresh correspondences in every iteration, until it converges.
 ///
 /// Never throws for data; the report tells what came of it. Bit-identical for every number of threads.
-/// \param source     undistorted features in the sensor's frame; changed only by `recompensate`
+/// \param source     features in the sensor's frame, distorted by the motion that `run.sweep` describes
 /// \param parameters must be valid (\ref validate)
-[[nodiscard]] RegistrationReport registerFeatures(FeatureSet& source, const FeatureTarget& target,
+[[nodiscard]] RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarget& target,
                                                   const RegistrationRun& run, const RegistrationParameters& parameters);
 
 }  // namespace pcl_floam

@@ -43,6 +43,8 @@ struct RegistrationReport {
   double cost = 0.0;          ///< half the sum of weighted squared residuals, m^2
   double residual_rms = 0.0;  ///< weighted root mean square of the residuals, m
   SE3 target_T_source;        ///< the result; the guess when it failed
+  /// Motion over the sweep that goes with the result: as it was given, or as it was estimated.
+  Vector6 sweep_twist = Vector6::Zero();
   /// J^T W J of the last iteration. Perturbation order (translation m, rotation rad), on the left, with the
   /// rotation about the sensor's position and the target's axes.
   Matrix6 information = Matrix6::Zero();

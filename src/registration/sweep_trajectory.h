@@ -1,0 +1,61 @@
+/// \file sweep_trajectory.h
+/// Where the points of a moving sweep lie in the target: the motion model of the registration.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+#include <algorithm>
+#include <array>
+
+namespace pcl_floam {
+
+/// The sensor's poses during one sweep: T(s) = T(r) exp((s - r) xi) (Eq. 3, 4).
+///
+/// How a point moves with the unknowns is simple: a perturbation delta of the pose at r and epsilon of the twist, both
+/// on the left (Eq. 11), move the point measured at s as delta + (s - r) epsilon would move a rigid scan. A scan that
+/// moves as one has epsilon = 0.
+class SweepTrajectory {
+public:
+  SweepTrajectory(const SE3& target_T_sensor, const Vector6& twist, double reference)
+      : pose_(target_T_sensor), twist_(twist), reference_(reference)
+  {
+    tabulate();
+  }
+
+  [[nodiscard]] const SE3& pose() const { return pose_; }
+  [[nodiscard]] const Vector6& twist() const { return twist_; }
+
+  /// Time from the reference instant.
+  [[nodiscard]] double sinceReference(double time) const { return time - reference_; }
+
+  /// A point of the sensor's frame, measured at a fraction of the sweep in [0, 1], in the target's frame.
+  [[nodiscard]] Eigen::Vector3d at(const Eigen::Vector3d& point, double time) const
+  {
+    if (still_) {
+      return pose_ * point;
+    }
+    const double place = std::clamp(time, 0.0, 1.0) * kSteps;
+    const auto step = static_cast<int>(place + 0.5);
+    const Eigen::Vector3d near = poses_[static_cast<std::size_t>(step)] * point;
+    // The rest of the way to first order: half a step of a turn of 1 rad leaves 3e-5 rad out of account.
+    return near + (place - step) / kSteps * (velocity_ + angular_velocity_.cross(near));
+  }
+
+  /// The trajectory perturbed on the left by \p delta at the reference instant and \p epsilon over the sweep.
+  [[nodiscard]] SweepTrajectory perturbed(const Vector6& delta, const Vector6& epsilon) const;
+
+private:
+  static constexpr int kSteps = 64;
+
+  void tabulate();
+
+  SE3 pose_;
+  Vector6 twist_;
+  double reference_;
+  bool still_ = true;
+  std::array<SE3, kSteps + 1> poses_;
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< spatial: the same all through the sweep
+  Eigen::Vector3d angular_velocity_ = Eigen::Vector3d::Zero();
+};
+
+}  // namespace pcl_floam
