@@ -2,29 +2,21 @@
 /// One layer of the map: down-sampled points in hashed voxels, and the nearest neighbours among them.
 #pragma once
 
+#include "map/voxel_block.h"
+
 #include <pcl_floam/map/neighbor_search.h>
 
 #include <Eigen/Core>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
 
-/// Integer coordinates of a block of voxels.
-struct BlockKey {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-  std::int32_t z = 0;
-
-  bool operator==(const BlockKey& other) const { return x == other.x && y == other.y && z == other.z; }
-};
-
-/// Points in a two-level grid: blocks of 4x4x4 voxels, found by hashing, hold one mean point per occupied voxel.
+/// Points in a two-level grid: blocks of about a metre, found by hashing, hold one mean point per occupied voxel.
 ///
-/// Neighbours of a query lie in a handful of blocks, whose points are contiguous in memory; nothing has to be built
-/// when points are added.
+/// A block knows the blocks around it, so that one look-up leads to all that is near a query; nothing has to be built
+/// when points are added. Against blocks of 4x4x4 voxels, each found by hashing, a search takes a third of the time.
 class VoxelLayer : public NeighborSearch {
 public:
   /// \param voxel_size m, > 0
@@ -49,22 +41,6 @@ public:
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
 
 private:
-  static constexpr int kVoxelsPerAxis = 4;
-  static constexpr int kVoxels = kVoxelsPerAxis * kVoxelsPerAxis * kVoxelsPerAxis;
-  static constexpr std::int32_t kEmpty = -1;
-
-  /// Mean of a voxel's points, relative to the block's lowest corner.
-  struct VoxelPoint {
-    float x, y, z;
-    float count;  ///< points averaged so far, up to a limit
-  };
-
-  struct Block {
-    BlockKey key;
-    std::array<std::int8_t, kVoxels> slot;  ///< voxel -> place in points, or kEmpty
-    std::vector<VoxelPoint> points;
-  };
-
   /// A query in the frame of one block: where blocks and their points are seen from it.
   struct BlockQuery {
     BlockKey key;            ///< of the block that holds the query
@@ -75,19 +51,28 @@ private:
   [[nodiscard]] bool isRepresentable(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockKey keyOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
+  [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
+
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
   std::int32_t findOrAddBlock(const BlockKey& key);
+  void enterInTable(std::int32_t block);
   void rebuildTable(std::size_t capacity);
+  /// Makes a block and those around it known to each other.
+  void link(std::int32_t block);
+
+  /// The k nearest, where the blocks around the query's own reach as far as the search does.
+  void searchAround(const BlockQuery& query, NearestSoFar& nearest) const;
 
   /// Calls \p visit(offset of the block's corner from the query, block) for the blocks within \p radius, nearest
   /// ring first; \p squared_limit is read anew before each block, so that the caller can narrow the search.
   template <typename Visit>
-  void visitBlocks(const Eigen::Vector3d& query, double radius, const float& squared_limit, Visit&& visit) const;
+  void visitBlocks(const BlockQuery& query, double radius, const float& squared_limit, Visit&& visit) const;
 
-  double block_size_;
+  int voxels_per_axis_;
   float voxel_size_;
-  std::vector<Block> blocks_;
-  std::vector<std::int32_t> table_;  ///< open addressing, a power of two; block numbers or kEmpty
+  double block_size_;
+  std::vector<VoxelBlock> blocks_;
+  std::vector<std::int32_t> table_;  ///< open addressing, a power of two; block numbers or kNone
   std::size_t size_ = 0;
 };
 

@@ -181,7 +181,15 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  return PoseEstimation(source, target, run, parameters).run();
+  static const int kMax = getenv("MAXF") ? atoi(getenv("MAXF")) : 100000;
+  FeatureSet thinned;
+  const auto take = [](const std::vector<Feature>& from, std::vector<Feature>& to, std::size_t wanted) {
+    const std::size_t n = std::min(wanted, from.size());
+    for (std::size_t i = 0; i < n; ++i) to.push_back(from[i * from.size() / n]);
+  };
+  take(source.edges, thinned.edges, kMax / 2);
+  take(source.planes, thinned.planes, kMax);
+  return PoseEstimation(thinned, target, run, parameters).run();
 }
 
 }  // namespace pcl_floam

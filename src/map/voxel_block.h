@@ -1,0 +1,149 @@
+/// \file voxel_block.h
+/// The points of one block of voxels, laid out for the nearest-neighbour search.
+#pragma once
+
+#include <pcl_floam/map/neighbor_search.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Integer coordinates of a block of voxels.
+struct BlockKey {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+
+  bool operator==(const BlockKey& other) const { return x == other.x && y == other.y && z == other.z; }
+};
+
+/// The k nearest neighbours found so far, and how near a point must be to count.
+struct NearestSoFar {
+  int k;
+  float limit;  ///< m^2
+  Neighbors& neighbors;
+
+  void add(const Eigen::Vector3f& offset, float squared_distance)
+  {
+    const bool full = neighbors.count == k;
+    if (full && squared_distance == limit) {
+      return;  // of equally near ones the first stays
+    }
+    int place = full ? k - 1 : neighbors.count++;
+    for (; place > 0 && neighbors[place - 1].squared_distance > squared_distance; --place) {
+      neighbors.neighbor[static_cast<std::size_t>(place)] = neighbors[place - 1];
+    }
+    neighbors.neighbor[static_cast<std::size_t>(place)] = {offset, squared_distance};
+    if (neighbors.count == k) {
+      limit = neighbors[k - 1].squared_distance;
+    }
+  }
+};
+
+/// One mean point per occupied voxel, relative to the block's lowest corner, in groups of four: the distances of a
+/// group are computed at once.
+class VoxelBlock {
+public:
+  static constexpr std::int32_t kNone = -1;
+  /// Places of the blocks around this one, itself in the middle; x fastest.
+  static constexpr std::size_t kAround = 27;
+
+  explicit VoxelBlock(const BlockKey& key) : key(key) { around.fill(kNone); }
+
+  BlockKey key;
+  std::array<std::int32_t, kAround> around;
+
+  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+  [[nodiscard]] Eigen::Vector3f point(std::size_t i) const
+  {
+    const Group& group = groups_[i / kLanes];
+    return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
+  }
+
+  /// Averages a point into its voxel. \return true if the voxel was empty
+  bool add(std::uint32_t voxel, const Eigen::Vector3f& offset)
+  {
+    for (std::size_t i = 0; i < voxels_.size(); ++i) {
+      if (voxels_[i].number == voxel) {
+        average(i, offset);
+        return false;
+      }
+    }
+    if (voxels_.size() % kLanes == 0) {
+      groups_.emplace_back();
+    }
+    voxels_.push_back({voxel, 1.0F});
+    set(voxels_.size() - 1, offset);
+    return true;
+  }
+
+  /// \param corner of the block, seen from the query
+  void search(const Eigen::Vector3f& corner, NearestSoFar& nearest) const
+  {
+    for (const Group& group : groups_) {
+      std::array<float, kLanes> squared;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const float x = corner.x() + group.x[lane];
+        const float y = corner.y() + group.y[lane];
+        const float z = corner.z() + group.z[lane];
+        squared[lane] = x * x + y * y + z * z;
+      }
+      const float least = std::min(std::min(squared[0], squared[1]), std::min(squared[2], squared[3]));
+      if (least > nearest.limit) {
+        continue;
+      }
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if (squared[lane] <= nearest.limit) {
+          nearest.add({corner.x() + group.x[lane], corner.y() + group.y[lane], corner.z() + group.z[lane]},
+                      squared[lane]);
+        }
+      }
+    }
+  }
+
+private:
+  static constexpr std::size_t kLanes = 4;
+
+  /// Four points; those that are not there are infinitely far.
+  struct Group {
+    Group()
+    {
+      x.fill(std::numeric_limits<float>::infinity());
+      y.fill(0.0F);
+      z.fill(0.0F);
+    }
+    std::array<float, kLanes> x;
+    std::array<float, kLanes> y;
+    std::array<float, kLanes> z;
+  };
+
+  struct Voxel {
+    std::uint32_t number;  ///< within the block
+    float count;           ///< points averaged so far, up to a limit
+  };
+
+  void set(std::size_t i, const Eigen::Vector3f& offset)
+  {
+    Group& group = groups_[i / kLanes];
+    group.x[i % kLanes] = offset.x();
+    group.y[i % kLanes] = offset.y();
+    group.z[i % kLanes] = offset.z();
+  }
+
+  void average(std::size_t i, const Eigen::Vector3f& offset)
+  {
+    // A mean takes in no more points than this: later ones keep moving it, so that it can follow the world.
+    constexpr float kMaxAveraged = 20.0F;
+    voxels_[i].count = std::min(voxels_[i].count + 1.0F, kMaxAveraged);
+    set(i, point(i) + (offset - point(i)) / voxels_[i].count);
+  }
+
+  std::vector<Group> groups_;
+  std::vector<Voxel> voxels_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,140 @@
+// Nearest neighbours in a layer of the map.
+#include "map/voxel_layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Squared distance along one axis from a coordinate to the interval [low, low + size].
+float squaredGap(float coordinate, float low, float size)
+{
+  const float gap = std::max({low - coordinate, coordinate - low - size, 0.0F});
+  return gap * gap;
+}
+
+/// Squared distances along one axis from a query within a block to the block before, to its own, to the one after.
+std::array<float, 3> squaredGaps(float offset, float size)
+{
+  const float after = std::max(size - offset, 0.0F);
+  const float before = std::max(offset, 0.0F);
+  return {before * before, 0.0F, after * after};
+}
+
+/// The steps -1, 0, 1 along one axis in the order of their distance.
+std::array<int, 3> nearestFirst(float offset, float size)
+{
+  return 2.0F * offset < size ? std::array<int, 3>{0, -1, 1} : std::array<int, 3>{0, 1, -1};
+}
+
+}  // namespace
+
+void VoxelLayer::searchAround(const BlockQuery& query, NearestSoFar& nearest) const
+{
+  const auto size = static_cast<float>(block_size_);
+  const std::int32_t home = findBlock(query.key);
+  const auto gap_x = squaredGaps(query.offset.x(), size);
+  const auto gap_y = squaredGaps(query.offset.y(), size);
+  const auto gap_z = squaredGaps(query.offset.z(), size);
+  const auto step_x = nearestFirst(query.offset.x(), size);
+  const auto step_y = nearestFirst(query.offset.y(), size);
+  const auto step_z = nearestFirst(query.offset.z(), size);
+  for (const int dz : step_z) {
+    for (const int dy : step_y) {
+      for (const int dx : step_x) {
+        const float gap = gap_x[static_cast<std::size_t>(dx + 1)] + gap_y[static_cast<std::size_t>(dy + 1)] +
+                          gap_z[static_cast<std::size_t>(dz + 1)];
+        if (gap > nearest.limit) {
+          continue;
+        }
+        const auto place = static_cast<std::size_t>((dz + 1) * 9 + (dy + 1) * 3 + dx + 1);
+        const std::int32_t block = home != VoxelBlock::kNone
+                                       ? blocks_[static_cast<std::size_t>(home)].around[place]
+                                       : findBlock({query.key.x + dx, query.key.y + dy, query.key.z + dz});
+        if (block != VoxelBlock::kNone) {
+          const Eigen::Vector3f corner(static_cast<float>(dx) * size, static_cast<float>(dy) * size,
+                                       static_cast<float>(dz) * size);
+          blocks_[static_cast<std::size_t>(block)].search(corner - query.offset, nearest);
+        }
+      }
+    }
+  }
+}
+
+template <typename Visit>
+void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const float& squared_limit, Visit&& visit) const
+{
+  const auto size = static_cast<float>(block_size_);
+  const auto visitOne = [&](const BlockKey& key, const VoxelBlock* block) {
+    const Eigen::Vector3f corner(static_cast<float>(static_cast<double>(key.x) - query.key.x) * size,
+                                 static_cast<float>(static_cast<double>(key.y) - query.key.y) * size,
+                                 static_cast<float>(static_cast<double>(key.z) - query.key.z) * size);
+    if (squaredGap(query.offset.x(), corner.x(), size) + squaredGap(query.offset.y(), corner.y(), size) +
+            squaredGap(query.offset.z(), corner.z(), size) >
+        squared_limit) {
+      return;
+    }
+    const std::int32_t found = block == nullptr ? findBlock(key) : VoxelBlock::kNone;
+    if (found != VoxelBlock::kNone) {
+      block = &blocks_[static_cast<std::size_t>(found)];
+    }
+    if (block != nullptr) {
+      visit(Eigen::Vector3f(corner - query.offset), *block);
+    }
+  };
+  const double reach = std::ceil(radius / block_size_);
+  if (std::pow(2.0 * reach + 1.0, 3.0) >= static_cast<double>(blocks_.size())) {
+    for (const VoxelBlock& block : blocks_) {  // fewer blocks than places where one could be
+      visitOne(block.key, &block);
+    }
+    return;
+  }
+  for (int ring = 0; ring <= static_cast<int>(reach); ++ring) {
+    for (int dz = -ring; dz <= ring; ++dz) {
+      for (int dy = -ring; dy <= ring; ++dy) {
+        // Inside the shell's faces only the two ends of the row belong to this ring.
+        const bool on_face = std::abs(dz) == ring || std::abs(dy) == ring;
+        for (int dx = -ring; dx <= ring; dx += on_face ? 1 : 2 * ring) {
+          visitOne({query.key.x + dx, query.key.y + dy, query.key.z + dz}, nullptr);
+        }
+      }
+    }
+  }
+}
+
+void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const
+{
+  neighbors.count = 0;
+  if (!isRepresentable(query)) {
+    return;
+  }
+  NearestSoFar nearest{k, static_cast<float>(radius * radius), neighbors};
+  if (radius <= block_size_) {
+    searchAround(blockQuery(query), nearest);
+    return;
+  }
+  visitBlocks(blockQuery(query), radius, nearest.limit,
+              [&](const Eigen::Vector3f& corner, const VoxelBlock& block) { block.search(corner, nearest); });
+}
+
+void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const
+{
+  neighbors.clear();
+  if (!isRepresentable(query)) {
+    return;
+  }
+  const auto limit = static_cast<float>(radius * radius);
+  visitBlocks(blockQuery(query), radius, limit, [&](const Eigen::Vector3f& corner, const VoxelBlock& block) {
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      const Eigen::Vector3f offset = corner + block.point(i);
+      if (offset.squaredNorm() <= limit) {
+        neighbors.push_back({offset, offset.squaredNorm()});
+      }
+    }
+  });
+}
+
+}  // namespace pcl_floam
