@@ -1,5 +1,7 @@
 #include <pcl_floam/filters/sweep_motion.h>
 
+#include "common/sweep_trajectory.h"
+
 #include <pcl_floam/filters/motion_compensation_mode.h>
 
 namespace pcl_floam {
@@ -36,8 +38,9 @@ void compensate(const std::vector<Feature>& features, const SweepMotion& motion,
   if (motion.isStill()) {
     return;
   }
+  const SweepTrajectory trajectory(SE3(), motion.twist(), motion.reference());
   for (Feature& feature : compensated) {
-    const Eigen::Vector3d point = motion.at(feature.time) * Eigen::Vector3d(feature.x, feature.y, feature.z);
+    const Eigen::Vector3d point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
     feature.x = static_cast<float>(point.x());
     feature.y = static_cast<float>(point.y());
     feature.z = static_cast<float>(point.z());

@@ -25,7 +25,8 @@ double unchangedWithin(const Neighbors& neighbors, int k, double search_radius)
   const double farthest = std::sqrt(static_cast<double>(neighbors[k - 1].squared_distance));
   const double next =
       neighbors.count > k ? std::sqrt(static_cast<double>(neighbors[k].squared_distance)) : search_radius;
-  return std::min(0.5 * (next - farthest), search_radius - farthest);
+  constexpr double kNegligible = 0.02;  // of the search radius
+  return std::max(kNegligible * search_radius, std::min(0.5 * (next - farthest), search_radius - farthest));
 }
 
 template <typename Factor, typename Fit>
@@ -51,13 +52,14 @@ void findOne(const RegistrationProblem& problem, const NeighborSearch& search, i
 template <typename Factor, typename Fit>
 void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature>& features,
                    const std::vector<double>& weights, const NeighborSearch& search, int k,
-                   const SweepTrajectory& trajectory, double search_radius, const Fit& fit,
+                   const SweepTrajectory& trajectory, double search_radius, std::size_t stride, const Fit& fit,
                    std::vector<Correspondence<Factor>>& correspondences)
 {
   correspondences.resize(features.size());
   // Each iteration writes its own element only: the result does not depend on who computes what.
 #pragma omp parallel for num_threads(problem.threads) schedule(dynamic, 64)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(features.size()); ++n) {
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(features.size());
+       n += static_cast<std::ptrdiff_t>(stride)) {
     const auto i = static_cast<std::size_t>(n);
     const Feature& feature = features[i];
     Correspondence<Factor>& correspondence = correspondences[i];
@@ -74,12 +76,13 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
 
 void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& source,
                          const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
-                         const SweepTrajectory& trajectory, double search_radius, Correspondences& correspondences)
+                         const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
+                         Correspondences& correspondences)
 {
   findOfOneKind(problem, source.edges, edge_weights, *problem.target.edges, problem.parameters.edge_neighbors,
-                trajectory, search_radius, fitLine, correspondences.edges);
+                trajectory, search_radius, stride, fitLine, correspondences.edges);
   findOfOneKind(problem, source.planes, plane_weights, *problem.target.planes, problem.parameters.plane_neighbors,
-                trajectory, search_radius, fitPlane, correspondences.planes);
+                trajectory, search_radius, stride, fitPlane, correspondences.planes);
 }
 
 }  // namespace pcl_floam

@@ -15,6 +15,23 @@ namespace pcl_floam {
 
 namespace {
 
+/// So many features lead near the solution, and at most one in so many is taken for that.
+constexpr std::size_t kEnoughFeatures = 500;
+constexpr std::size_t kMaxStride = 4;
+/// Steps of less than so many times the thresholds of convergence are near.
+constexpr double kNear = 10.0;
+
+/// At most so many of the features, evenly taken.
+std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
+{
+  const std::size_t count = std::min(most, features.size());
+  std::vector<Feature> taken(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    taken[i] = features[i * features.size() / count];
+  }
+  return taken;
+}
+
 /// One registration in progress.
 class PoseEstimation {
 public:
@@ -25,6 +42,7 @@ public:
         problem_{target, parameters, run.guess.translation, run.threads},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
+        stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
         edge_weights_(
             smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization)),
         plane_weights_(
@@ -71,12 +89,16 @@ private:
   /// One iteration of the pose estimation: fresh correspondences, one step. \return true when it is over
   bool iterate()
   {
-    findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_,
+    findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_, stride_,
                         correspondences_);
     const KernelScales scales = adaptKernelScales(problem_, correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
     ++report_.iterations;
     if (equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
+      if (stride_ > 1) {
+        stride_ = 1;
+        return false;
+      }
       report_.termination = Termination::too_few_correspondences;
       return true;
     }
@@ -118,6 +140,12 @@ private:
     }
     const bool small = step.pose.head<3>().norm() < problem_.parameters.translation_epsilon &&
                        step.pose.tail<3>().norm() < problem_.parameters.rotation_epsilon;
+    const bool near = step.pose.head<3>().norm() < kNear * problem_.parameters.translation_epsilon &&
+                      step.pose.tail<3>().norm() < kNear * problem_.parameters.rotation_epsilon;
+    if (stride_ > 1) {
+      stride_ = near && !searched_wide ? 1 : stride_;
+      return false;
+    }
     if (small && !searched_wide) {
       report_.termination = Termination::converged;
     }
@@ -154,6 +182,7 @@ private:
   RegistrationProblem problem_;
   SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin
   double search_radius_;
+  std::size_t stride_;  ///< far from the solution, every so many-th feature will do
   std::vector<double> edge_weights_;
   std::vector<double> plane_weights_;
   Correspondences correspondences_;
@@ -181,14 +210,8 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  static const int kMax = getenv("MAXF") ? atoi(getenv("MAXF")) : 100000;
-  FeatureSet thinned;
-  const auto take = [](const std::vector<Feature>& from, std::vector<Feature>& to, std::size_t wanted) {
-    const std::size_t n = std::min(wanted, from.size());
-    for (std::size_t i = 0; i < n; ++i) to.push_back(from[i * from.size() / n]);
-  };
-  take(source.edges, thinned.edges, kMax / 2);
-  take(source.planes, thinned.planes, kMax);
+  const auto most = static_cast<std::size_t>(parameters.max_features);
+  const FeatureSet thinned{evenly(source.edges, most), evenly(source.planes, most)};
   return PoseEstimation(thinned, target, run, parameters).run();
 }
 

@@ -2,9 +2,9 @@
 /// From the normal equations to the next estimate, for each freedom that a sweep may have.
 #pragma once
 
+#include "common/sweep_trajectory.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
-#include "registration/sweep_trajectory.h"
 
 #include <pcl_floam/registration/sweep_model.h>
 

@@ -27,8 +27,8 @@ enum class SearchMethod : std::uint8_t {
 [[nodiscard]] const char* toString(SearchMethod method);
 
 struct MapParameters {
-  double edge_voxel_size = 0.2;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
-  double plane_voxel_size = 0.3;  ///< m, > 0. Reasonable: 0.1 to 1
+  double edge_voxel_size = 0.1;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
+  double plane_voxel_size = 0.2;  ///< m, > 0. Reasonable: 0.1 to 1
   double horizon = 150.0;         ///< m, > 0: points farther from the sensor are forgotten
   SearchMethod search = SearchMethod::voxel;
 };

@@ -26,7 +26,7 @@ struct OdometryParameters {
   /// time field spans less than the period, and to gaps.
   double scan_period = 0.0;
   FeatureParameters features;
-  CompensationMode compensation = CompensationMode::two_stage;
+  CompensationMode compensation = CompensationMode::continuous;
   PoseInstant pose_instant = PoseInstant::end;  ///< of the poses given out
   RegistrationParameters registration;
   KeyframePolicy keyframe;

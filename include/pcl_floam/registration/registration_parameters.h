@@ -46,6 +46,9 @@ struct RegistrationParameters {
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.1;
+  /// Most features of each kind that are registered, evenly taken from those of the scan; >= 100. With 2500 of the
+  /// 7000 planes of an HDL-64 scan the pose is as accurate as with all, with 1000 a fifth less so.
+  int max_features = 2500;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
   /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.

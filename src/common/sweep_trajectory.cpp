@@ -1,4 +1,4 @@
-#include "registration/sweep_trajectory.h"
+#include "common/sweep_trajectory.h"
 
 namespace pcl_floam {
 
