@@ -36,14 +36,6 @@ struct LineScratch {
   std::vector<int> candidates;
 };
 
-float squaredDistance(const LinePoints& line, std::size_t a, std::size_t b)
-{
-  const float dx = line.x[a] - line.x[b];
-  const float dy = line.y[a] - line.y[b];
-  const float dz = line.z[a] - line.z[b];
-  return dx * dx + dy * dy + dz * dz;
-}
-
 /// Marks the \p half_window points on the far side of each depth step.
 void markOccluded(const LinePoints& line, int half_window, std::vector<std::uint8_t>& unfit)
 {
@@ -54,7 +46,7 @@ void markOccluded(const LinePoints& line, int half_window, std::vector<std::uint
     if (std::abs(step) < kDepthStep * nearer) {
       continue;
     }
-    const float lateral2 = squaredDistance(line, a, a + 1) - step * step;
+    const float lateral2 = line.squared_step[a] - step * step;
     if (lateral2 > kAdjacent * kAdjacent * nearer * nearer) {
       continue;
     }
@@ -68,17 +60,19 @@ void markOccluded(const LinePoints& line, int half_window, std::vector<std::uint
 
 void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::uint8_t>& unfit)
 {
-  unfit.assign(line.x.size(), kFit);
-  for (std::size_t n = 0; n < line.x.size(); ++n) {
-    if (line.range[n] < parameters.min_range || line.range[n] > parameters.max_range) {
-      unfit[n] |= kOutOfRange;
-    }
+  const std::size_t size = line.x.size();
+  unfit.resize(size);
+  const float* range = line.range.data();
+  const float* squared_step = line.squared_step.data();
+  // No branches: these two loops go over every point of the scan.
+  for (std::size_t n = 0; n < size; ++n) {
+    const bool out_of_range = (range[n] < parameters.min_range) | (range[n] > parameters.max_range);
+    unfit[n] = static_cast<std::uint8_t>(out_of_range * kOutOfRange);
   }
-  for (std::size_t n = 1; n + 1 < line.x.size(); ++n) {
-    const float limit = kGrazingSpacing * line.range[n];
-    if (squaredDistance(line, n, n - 1) > limit * limit && squaredDistance(line, n, n + 1) > limit * limit) {
-      unfit[n] |= kGrazing;
-    }
+  for (std::size_t n = 1; n + 1 < size; ++n) {
+    const float limit = kGrazingSpacing * range[n];
+    const bool grazing = (squared_step[n - 1] > limit * limit) & (squared_step[n] > limit * limit);
+    unfit[n] = static_cast<std::uint8_t>(unfit[n] | (grazing * kGrazing));
   }
   markOccluded(line, parameters.neighbors_each_side, unfit);
 }

@@ -9,13 +9,25 @@ namespace {
 
 constexpr std::int32_t kNone = VoxelBlock::kNone;
 
-std::size_t hashOf(const BlockKey& key)
+std::uint32_t tagOf(std::uint64_t hash)
+{
+  return static_cast<std::uint32_t>(hash);
+}
+
+/// The product's high bits depend on all of the key.
+std::size_t placeOf(std::uint64_t hash, std::size_t mask)
+{
+  return static_cast<std::size_t>(hash >> 32) & mask;
+}
+
+std::uint64_t hashOf(const BlockKey& key)
 {
   // Three odd 64-bit constants; the high bits, which depend on all of the input, are folded onto the low ones.
   std::uint64_t h = static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.x)) * 0x9E3779B97F4A7C15ULL;
   h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) * 0xC2B2AE3D27D4EB4FULL;
   h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.z)) * 0x165667B19E3779F9ULL;
-  return static_cast<std::size_t>(h ^ (h >> 32));
+  h ^= h >> 32;
+  return h * 0x9E3779B97F4A7C15ULL;
 }
 
 /// Block numbers stay below this, with room to step to neighbours: 32 bits hold twice as many.
@@ -71,10 +83,12 @@ std::uint32_t VoxelLayer::voxelAt(const Eigen::Vector3f& offset) const
 std::int32_t VoxelLayer::findBlock(const BlockKey& key) const
 {
   const std::size_t mask = table_.size() - 1;
-  for (std::size_t place = hashOf(key) & mask;; place = (place + 1) & mask) {
-    const std::int32_t block = table_[place];
-    if (block == kNone || blocks_[static_cast<std::size_t>(block)].key == key) {
-      return block;
+  const std::uint64_t hash = hashOf(key);
+  for (std::size_t place = placeOf(hash, mask);; place = (place + 1) & mask) {
+    const Entry& entry = table_[place];
+    if (entry.block == kNone ||
+        (entry.tag == tagOf(hash) && blocks_[static_cast<std::size_t>(entry.block)].key == key)) {
+      return entry.block;
     }
   }
 }
@@ -82,16 +96,17 @@ std::int32_t VoxelLayer::findBlock(const BlockKey& key) const
 void VoxelLayer::enterInTable(std::int32_t block)
 {
   const std::size_t mask = table_.size() - 1;
-  std::size_t place = hashOf(blocks_[static_cast<std::size_t>(block)].key) & mask;
-  while (table_[place] != kNone) {
+  const std::uint64_t hash = hashOf(blocks_[static_cast<std::size_t>(block)].key);
+  std::size_t place = placeOf(hash, mask);
+  while (table_[place].block != kNone) {
     place = (place + 1) & mask;
   }
-  table_[place] = block;
+  table_[place] = {tagOf(hash), block};
 }
 
 void VoxelLayer::rebuildTable(std::size_t capacity)
 {
-  table_.assign(capacity, kNone);
+  table_.assign(capacity, Entry());
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     enterInTable(static_cast<std::int32_t>(b));
   }
@@ -137,7 +152,10 @@ void VoxelLayer::insert(const Eigen::Vector3d& point)
     return;
   }
   const BlockQuery place = blockQuery(point);
-  VoxelBlock& block = blocks_[static_cast<std::size_t>(findOrAddBlock(place.key))];
+  if (last_block_ == kNone || !(blocks_[static_cast<std::size_t>(last_block_)].key == place.key)) {
+    last_block_ = findOrAddBlock(place.key);
+  }
+  VoxelBlock& block = blocks_[static_cast<std::size_t>(last_block_)];
   size_ += block.add(voxelAt(place.offset), place.offset) ? 1 : 0;
 }
 
@@ -153,6 +171,7 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
     return;
   }
   blocks_.erase(far_begin, blocks_.end());
+  last_block_ = kNone;
   rebuildTable(table_.size());
   size_ = 0;
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -164,6 +183,7 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
 void VoxelLayer::clear()
 {
   blocks_.clear();
+  last_block_ = kNone;
   size_ = 0;
   rebuildTable(1024);
 }

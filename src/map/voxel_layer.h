@@ -72,7 +72,14 @@ private:
   float voxel_size_;
   double block_size_;
   std::vector<VoxelBlock> blocks_;
-  std::vector<std::int32_t> table_;  ///< open addressing, a power of two; block numbers or kNone
+
+  /// A place of the hash table. Most look-ups are for blocks that don't exist: the tag tells without a look at one.
+  struct Entry {
+    std::uint32_t tag = 0;  ///< further bits of the key's hash
+    std::int32_t block = VoxelBlock::kNone;
+  };
+  std::vector<Entry> table_;                     ///< open addressing, a power of two
+  std::int32_t last_block_ = VoxelBlock::kNone;  ///< inserted into; the next point is likely to lie there, too
   std::size_t size_ = 0;
 };
 
