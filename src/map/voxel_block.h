@@ -52,7 +52,7 @@ public:
   /// Places of the blocks around this one, itself in the middle; x fastest.
   static constexpr std::size_t kAround = 27;
 
-  explicit VoxelBlock(const BlockKey& key) : key(key) { around.fill(kNone); }
+  explicit VoxelBlock(const BlockKey& block_key) : key(block_key) { around.fill(kNone); }
 
   BlockKey key;
   std::array<std::int32_t, kAround> around;

@@ -69,7 +69,8 @@ TEST(Odometry, RecoversASteadyMotionFromItsFirstScan)
 
 TEST(Odometry, RecoversAnAcceleratedMotion)
 {
-  for (const CompensationMode mode : {CompensationMode::two_stage, CompensationMode::iterative}) {
+  for (const CompensationMode mode :
+       {CompensationMode::two_stage, CompensationMode::iterative, CompensationMode::continuous}) {
     OdometryParameters parameters;
     parameters.compensation = mode;
     Odometry<PointXYZIRT> odometry(parameters);

@@ -1,10 +1,14 @@
-// H and b against numeric derivatives of the cost, and what is made of them.
+// H and b against numeric derivatives of the cost, and the steps of both solvers.
 #include "registration/ceres_solver.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
+#include "registration/sweep_step.h"
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 
 namespace pcl_floam::test {
 namespace {
@@ -14,76 +18,137 @@ Eigen::Vector3d randomVector(std::mt19937& random, double limit)
   return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
 }
 
-/// Correspondences that a pose fits up to \p noise.
-Correspondences makeCorrespondences(const SE3& pose, double noise, std::size_t edges = 300, std::size_t planes = 700)
-{
-  std::mt19937 random(1);
-  Correspondences all;
-  const auto fill = [&](auto& correspondences, std::size_t count) {
-    correspondences.resize(count);
-    for (auto& c : correspondences) {
-      c.point = randomVector(random, 15.0);
-      c.weight = 1.0 + uniform(random, 0.5);
-      c.factor = {pose * c.point + randomVector(random, noise), randomVector(random, 1.0).normalized()};
-    }
-  };
-  fill(all.edges, edges);
-  fill(all.planes, planes);
-  return all;
-}
+/// A scan, and correspondences that a trajectory of the sensor fits up to \p noise.
+struct Scan {
+  std::vector<Feature> edges;
+  std::vector<Feature> planes;
+  Correspondences factors;
+
+  Scan(const SweepTrajectory& trajectory, double noise, std::size_t edge_count = 300, std::size_t plane_count = 700)
+  {
+    std::mt19937 random(1);
+    const auto fill = [&](std::vector<Feature>& features, auto& correspondences, std::size_t count) {
+      correspondences.resize(count);
+      for (auto& c : correspondences) {
+        const Eigen::Vector3f point = randomVector(random, 15.0).cast<float>();
+        features.push_back({point.x(), point.y(), point.z(), static_cast<float>(0.5 + uniform(random, 0.5))});
+        c.weight = 1.0 + uniform(random, 0.5);
+        c.factor = {trajectory.at(point.cast<double>(), features.back().time) + randomVector(random, noise),
+                    randomVector(random, 1.0).normalized()};
+      }
+    };
+    fill(edges, factors.edges, edge_count);
+    fill(planes, factors.planes, plane_count);
+  }
+
+  /// With the points where a trajectory puts them.
+  [[nodiscard]] Correspondences along(const SweepTrajectory& trajectory) const
+  {
+    Correspondences moved = factors;
+    const auto move = [&](const std::vector<Feature>& features, auto& correspondences) {
+      for (std::size_t i = 0; i < features.size(); ++i) {
+        const Feature& f = features[i];
+        correspondences[i].point = trajectory.at(Eigen::Vector3d(f.x, f.y, f.z), f.time);
+        correspondences[i].since_reference = trajectory.sinceReference(f.time);
+      }
+    };
+    move(edges, moved.edges);
+    move(planes, moved.planes);
+    return moved;
+  }
+};
 
 class NormalEquationsTest : public testing::Test {
 protected:
-  NormalEquations equationsAt(const SE3& pose) const
+  NormalEquations equationsOf(const Correspondences& correspondences) const
   {
-    return buildNormalEquations(problem_, pose, correspondences_, {0.2, 0.1});
+    return buildNormalEquations(problem_, correspondences, scales_);
   }
-  double costAfter(const Vector6& step) const { return equationsAt(exp(step) * pose_).cost; }
+  NormalEquations equationsAt(const SweepTrajectory& trajectory) const { return equationsOf(scan_.along(trajectory)); }
+  double costAfter(const Vector6& pose_step, const Vector6& twist_step = Vector6::Zero()) const
+  {
+    return equationsAt(trajectory_.perturbed(pose_step, twist_step)).cost;
+  }
+  SweepTrajectory perturbedStart() const
+  {
+    return trajectory_.perturbed((Vector6() << 0.05, -0.03, 0.02, 0.004, -0.003, 0.002).finished(),
+                                 (Vector6() << -0.02, 0.04, 0.01, 0.002, 0.005, -0.004).finished());
+  }
 
-  SE3 pose_ = exp((Vector6() << 1.0, -2.0, 0.5, 0.1, -0.2, 0.9).finished());
+  SweepTrajectory trajectory_{exp((Vector6() << 1.0, -2.0, 0.5, 0.1, -0.2, 0.9).finished()),
+                              (Vector6() << 0.9, 0.1, -0.2, 0.05, -0.1, 0.15).finished(), 0.5};
   FeatureTarget target_;
   RegistrationParameters parameters_;
   RegistrationProblem problem_{target_, parameters_, Eigen::Vector3d::Zero()};
-  Correspondences correspondences_ = makeCorrespondences(pose_, 0.1);
+  KernelScales scales_{0.2, 0.1};
+  Scan scan_{trajectory_, 0.1};
 };
 
-TEST_F(NormalEquationsTest, GradientIsTheDerivativeOfTheRobustCost)
+TEST_F(NormalEquationsTest, GradientsAreTheDerivativesOfTheRobustCost)
 {
   for (const RobustKernel kernel :
        {RobustKernel::none, RobustKernel::huber, RobustKernel::cauchy, RobustKernel::geman_mcclure}) {
     parameters_.kernel = kernel;
-    const Vector6 gradient = equationsAt(pose_).gradient;
+    const NormalEquations equations = equationsAt(trajectory_);
     for (int i = 0; i < 6; ++i) {
       const Vector6 step = 1e-6 * Vector6::Unit(i);
-      const double numeric = (costAfter(step) - costAfter(-step)) / 2e-6;
-      EXPECT_NEAR(gradient[i], numeric, 1e-5 * gradient.norm()) << toString(kernel) << ' ' << i;
+      const Vector6 none = Vector6::Zero();
+      EXPECT_NEAR(equations.gradient[i], (costAfter(step) - costAfter(-step)) / 2e-6, 1e-5 * equations.gradient.norm())
+          << toString(kernel) << ' ' << i;
+      // Exact to first order in the motion during the sweep, which here is as fast as a car's.
+      EXPECT_NEAR(equations.twist_gradient[i], (costAfter(none, step) - costAfter(none, -step)) / 2e-6,
+                  0.05 * equations.twist_gradient.norm())
+          << toString(kernel) << ' ' << i;
     }
   }
 }
 
-TEST_F(NormalEquationsTest, InformationIsTheHessianOfTheCostAtTheOptimum)
+TEST_F(NormalEquationsTest, SumsAreTheHessianOfTheCostAtTheOptimum)
 {
   parameters_.kernel = RobustKernel::none;
-  correspondences_ = makeCorrespondences(pose_, 1e-4);
-  const Matrix6 information = equationsAt(pose_).information;
+  trajectory_ = SweepTrajectory(trajectory_.pose(), 1e-3 * trajectory_.twist(), 0.5);
+  scan_ = Scan(trajectory_, 1e-4);
+  const NormalEquations equations = equationsAt(trajectory_);
   constexpr double kStep = 1e-3;
+  const auto numeric = [&](int i, int j) {
+    const auto cost = [&](double a, double b) {
+      Vector6 pose = Vector6::Zero();
+      Vector6 twist = Vector6::Zero();
+      (i < 6 ? pose[i] : twist[i - 6]) += a * kStep;
+      (j < 6 ? pose[j] : twist[j - 6]) += b * kStep;
+      return costAfter(pose, twist);
+    };
+    return (cost(1, 1) - cost(1, -1) - cost(-1, 1) + cost(-1, -1)) / (4.0 * kStep * kStep);
+  };
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < 6; ++j) {
-      const Vector6 a = kStep * Vector6::Unit(i);
-      const Vector6 b = kStep * Vector6::Unit(j);
-      const double numeric =
-          (costAfter(a + b) - costAfter(a - b) - costAfter(b - a) + costAfter(-a - b)) / (4.0 * kStep * kStep);
-      EXPECT_NEAR(information(i, j), numeric, 1e-3 * std::sqrt(information(i, i) * information(j, j)));
+      const double scale = std::sqrt(equations.information(i, i) * equations.information(j, j));
+      EXPECT_NEAR(equations.information(i, j), numeric(i, j), 2e-3 * scale);
+      EXPECT_NEAR(equations.coupling(i, j), numeric(i, 6 + j), 2e-3 * scale);
+      EXPECT_NEAR(equations.twist_information(i, j), numeric(6 + i, 6 + j), 2e-3 * scale);
     }
+  }
+}
+
+TEST_F(NormalEquationsTest, ATwistThatFollowsThePoseReducesToIt)
+{
+  SweepModel model;
+  model.freedom = SweepFreedom::follows_pose;
+  model.sweep_per_motion = 0.8;
+  const NormalEquations reduced = reducedToPose(equationsAt(trajectory_), model);
+  for (int i = 0; i < 6; ++i) {
+    const Vector6 step = 1e-6 * Vector6::Unit(i);
+    const double numeric = (costAfter(step, 0.8 * step) - costAfter(-step, -0.8 * step)) / 2e-6;
+    EXPECT_NEAR(reduced.gradient[i], numeric, 1e-2 * reduced.gradient.norm());
   }
 }
 
 TEST_F(NormalEquationsTest, SumsAreTheSameBitsForEveryNumberOfThreads)
 {
-  const NormalEquations one = equationsAt(pose_);
+  const NormalEquations one = equationsAt(trajectory_);
   for (const int threads : {2, 3, 7}) {
     problem_.threads = threads;
-    const NormalEquations many = equationsAt(pose_);
+    const NormalEquations many = equationsAt(trajectory_);
     EXPECT_EQ(one.information, many.information);
     EXPECT_EQ(one.gradient, many.gradient);
     EXPECT_EQ(one.cost, many.cost);
@@ -92,11 +157,12 @@ TEST_F(NormalEquationsTest, SumsAreTheSameBitsForEveryNumberOfThreads)
 
 TEST_F(NormalEquationsTest, CorrespondencesWithoutWeightDoNotCount)
 {
-  const NormalEquations before = equationsAt(pose_);
-  correspondences_.edges.emplace_back();
-  correspondences_.edges.back().point = Eigen::Vector3d(1.0, 2.0, 3.0);
-  correspondences_.edges.back().factor = {Eigen::Vector3d(9.0, 9.0, 9.0), Eigen::Vector3d::UnitX()};
-  const NormalEquations after = equationsAt(pose_);
+  Correspondences correspondences = scan_.along(trajectory_);
+  const NormalEquations before = equationsOf(correspondences);
+  correspondences.edges.emplace_back();
+  correspondences.edges.back().point = Eigen::Vector3d(1.0, 2.0, 3.0);
+  correspondences.edges.back().factor = {Eigen::Vector3d(9.0, 9.0, 9.0), Eigen::Vector3d::UnitX()};
+  const NormalEquations after = equationsOf(correspondences);
   EXPECT_EQ(before.edges, 300);
   EXPECT_EQ(after.edges, 300);
   EXPECT_DOUBLE_EQ(before.cost, after.cost);
@@ -106,36 +172,97 @@ TEST_F(NormalEquationsTest, NewtonStepsAndCeresReachTheSameOptimum)
 {
   for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::cauchy}) {
     parameters_.kernel = kernel;
-    const KernelScales scales{0.3, 0.3};
-    const SE3 start = exp((Vector6() << 0.05, -0.03, 0.02, 0.004, -0.003, 0.002).finished()) * pose_;
-    SE3 newton = start;
-    SE3 ceres = start;
+    SweepTrajectory newton = perturbedStart();
+    SweepTrajectory ceres = newton;
     for (int i = 0; i < 30; ++i) {
-      const NormalEquations equations = buildNormalEquations(problem_, newton, correspondences_, scales);
-      newton = exp(InformationAnalysis(equations, 0.0).step()) * newton;
-      ceres = exp(solveWithCeres(problem_, ceres, correspondences_, scales)) * ceres;
+      const NormalEquations equations = buildNormalEquations(problem_, scan_.along(newton), scales_);
+      newton = newton.perturbed(InformationAnalysis(equations, 0.0).step(), Vector6::Zero());
+      const SweepStep step = solveWithCeres(problem_, SweepModel(), scan_.along(ceres), scales_, std::nullopt);
+      EXPECT_TRUE(step.twist.isZero(0.0));
+      ceres = ceres.perturbed(step.pose, step.twist);
     }
-    EXPECT_LT(log(newton.inverse() * ceres).norm(), 5e-5) << toString(kernel);
-    EXPECT_LT(equationsAt(newton).gradient.norm(), equationsAt(start).gradient.norm());
+    EXPECT_LT(log(newton.pose().inverse() * ceres.pose()).norm(), 5e-5) << toString(kernel);
+    EXPECT_LT(equationsAt(newton).gradient.norm(), 1e-3 * equationsAt(perturbedStart()).gradient.norm());
   }
+}
+
+TEST_F(NormalEquationsTest, NewtonStepsAndCeresReachTheSameMotionDuringTheSweep)
+{
+  for (const RobustKernel kernel : {RobustKernel::none, RobustKernel::cauchy}) {
+    parameters_.kernel = kernel;
+    scan_ = Scan(trajectory_, 0.02);
+    SweepModel model;
+    model.freedom = SweepFreedom::free;
+    model.prior.pose = perturbedStart().pose();
+    model.prior.twist = perturbedStart().twist();
+    model.prior.translation = model.prior.rotation = {0.01, 0.01, 0.005};
+    SweepTrajectory newton = perturbedStart();
+    SweepTrajectory ceres = newton;
+    for (int i = 0; i < 30; ++i) {
+      const NormalEquations equations = buildNormalEquations(problem_, scan_.along(newton), scales_);
+      const SweepStep step =
+          FreeSweepSolver(equations, InformationAnalysis(equations, 0.0), model.prior, newton).step();
+      newton = newton.perturbed(step.pose, step.twist);
+      const NormalEquations of_ceres = buildNormalEquations(problem_, scan_.along(ceres), scales_);
+      const double variance = independentVariance(InformationAnalysis(of_ceres, 0.0));
+      const SweepStep other =
+          solveWithCeres(problem_, model, scan_.along(ceres), scales_, motionPriorTerm(model.prior, ceres, variance));
+      ceres = ceres.perturbed(other.pose, other.twist);
+    }
+    EXPECT_LT(log(newton.pose().inverse() * ceres.pose()).norm(), 1e-4) << toString(kernel);
+    EXPECT_LT((newton.twist() - ceres.twist()).norm(), 2e-4) << toString(kernel);
+    EXPECT_LT((newton.twist() - trajectory_.twist()).norm(), 0.5 * (newton.twist() - model.prior.twist).norm());
+  }
+}
+
+TEST_F(NormalEquationsTest, APriorThatIsSureWins)
+{
+  MotionPrior prior;
+  prior.pose = perturbedStart().pose();
+  prior.twist = perturbedStart().twist();
+  prior.translation = prior.rotation = {1e-12, 1e-12, 0.0};
+  SweepTrajectory result = trajectory_;
+  for (int i = 0; i < 5; ++i) {
+    const NormalEquations equations = equationsAt(result);
+    const FreeSweepSolver solver(equations, InformationAnalysis(equations, 1e-4), prior, result);
+    result = result.perturbed(solver.step().pose, solver.step().twist);
+    EXPECT_LT(solver.poseCovariance().norm(), 1e-11);
+  }
+  EXPECT_LT(log(result.pose().inverse() * prior.pose).norm(), 1e-6);
+  EXPECT_LT((result.twist() - prior.twist).norm(), 1e-6);
+}
+
+TEST_F(NormalEquationsTest, APriorThatKnowsNothingIsNotSeen)
+{
+  MotionPrior prior;
+  prior.translation = prior.rotation = {1e12, 1e12, 0.0};
+  const NormalEquations equations = equationsAt(perturbedStart());
+  const FreeSweepSolver solver(equations, InformationAnalysis(equations, 1e-4), prior, perturbedStart());
+  Eigen::Matrix<double, 12, 12> sums;
+  sums << equations.information, equations.coupling, equations.coupling, equations.twist_information;
+  Eigen::Matrix<double, 12, 1> gradient;
+  gradient << equations.gradient, equations.twist_gradient;
+  const Eigen::Matrix<double, 12, 1> expected = -sums.ldlt().solve(gradient);
+  EXPECT_LT((solver.step().pose - expected.head<6>()).norm(), 1e-6);
+  EXPECT_LT((solver.step().twist - expected.tail<6>()).norm(), 1e-6);
 }
 
 TEST_F(NormalEquationsTest, KernelScaleFollowsTheResiduals)
 {
   parameters_.kernel_scale = 0.01;
-  const KernelScales narrow = adaptKernelScales(problem_, pose_, correspondences_);
-  const KernelScales wide = adaptKernelScales(problem_, pose_, makeCorrespondences(pose_, 1.0));
-  EXPECT_NEAR(wide.edge / narrow.edge, 10.0, 1e-6);
-  EXPECT_NEAR(wide.plane / narrow.plane, 10.0, 1e-6);
-  const KernelScales exact = adaptKernelScales(problem_, pose_, makeCorrespondences(pose_, 0.0));
-  EXPECT_DOUBLE_EQ(exact.edge, 0.01);
-  EXPECT_DOUBLE_EQ(exact.plane, 0.01);
+  const auto scalesAt = [&](double noise) {
+    return adaptKernelScales(problem_, Scan(trajectory_, noise).along(trajectory_));
+  };
+  EXPECT_NEAR(scalesAt(1.0).edge / scalesAt(0.1).edge, 10.0, 1e-3);
+  EXPECT_NEAR(scalesAt(1.0).plane / scalesAt(0.1).plane, 10.0, 1e-3);
+  EXPECT_DOUBLE_EQ(scalesAt(0.0).edge, 0.01);
+  EXPECT_DOUBLE_EQ(scalesAt(0.0).plane, 0.01);
 }
 
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)
 {
   parameters_.kernel = RobustKernel::none;
-  const NormalEquations equations = equationsAt(pose_);
+  const NormalEquations equations = equationsAt(trajectory_);
   const InformationAnalysis analysis(equations, 1e-4);
   const double variance = equations.weighted_squares / equations.weight;
   const Eigen::Matrix<double, 6, 6> expected = variance * Eigen::Matrix<double, 6, 6>(equations.information).inverse();
@@ -145,13 +272,14 @@ TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)
 
 TEST_F(NormalEquationsTest, AWallLeavesThreeDirectionsWeak)
 {
-  correspondences_ = makeCorrespondences(SE3(), 0.05, 0, 500);
-  for (auto& c : correspondences_.planes) {
+  const SweepTrajectory still(SE3(), Vector6::Zero(), 0.5);
+  Correspondences correspondences = Scan(still, 0.05, 0, 500).along(still);
+  for (auto& c : correspondences.planes) {
     c.point.z() = 0.0;
     c.factor.center = Eigen::Vector3d(0.0, 0.0, 0.1);
     c.factor.normal = Eigen::Vector3d::UnitZ();
   }
-  const NormalEquations equations = equationsAt(SE3());
+  const NormalEquations equations = equationsOf(correspondences);
   const InformationAnalysis analysis(equations, 1e-4);
   const auto weak = analysis.weakDirections();
   ASSERT_EQ(weak.size(), 3U);
@@ -173,14 +301,15 @@ TEST_F(NormalEquationsTest, NoiseAlongWeakDirectionsIsNotFollowed)
 {
   // Normals that are a little off seem to tell something of x and y, and noise in the distances turns it into metres.
   std::mt19937 random(3);
-  correspondences_ = makeCorrespondences(SE3(), 0.0, 0, 500);
-  for (auto& c : correspondences_.planes) {
+  const SweepTrajectory still(SE3(), Vector6::Zero(), 0.5);
+  Correspondences correspondences = Scan(still, 0.0, 0, 500).along(still);
+  for (auto& c : correspondences.planes) {
     c.point.z() = 0.0;
     c.factor.center = c.point + Eigen::Vector3d(0.0, 0.0, 0.1 + uniform(random, 0.05));
     c.factor.normal = Eigen::Vector3d(uniform(random, 0.005), uniform(random, 0.005), 1.0).normalized();
   }
   parameters_.kernel = RobustKernel::none;
-  const NormalEquations equations = equationsAt(SE3());
+  const NormalEquations equations = equationsOf(correspondences);
   const Vector6 followed = InformationAnalysis(equations, 0.0).step();
   const InformationAnalysis analysis(equations, 1e-4);
   EXPECT_EQ(analysis.weakDirections().size(), 3U);
