@@ -133,7 +133,7 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotat
 
 double azimuthFraction(const ScanTiming& timing, const CloudView& cloud, std::size_t i)
 {
-  const double azimuth = std::atan2(static_cast<double>(cloud.y(i)), static_cast<double>(cloud.x(i)));
+  const double azimuth = std::atan2(cloud.y(i), cloud.x(i));  // in float: 1e-7 of a turn is enough
   const double turned = timing.clockwise ? timing.start_azimuth - azimuth : azimuth - timing.start_azimuth;
   double fraction = turned / kTwoPi;
   fraction -= std::floor(fraction);

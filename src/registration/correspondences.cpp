@@ -19,32 +19,22 @@ PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
   return {query + plane.center, plane.normal};
 }
 
-/// Distance that a query may move without its first \p k neighbours changing or leaving the search radius.
-double unchangedWithin(const Neighbors& neighbors, int k, double search_radius)
-{
-  const double farthest = std::sqrt(static_cast<double>(neighbors[k - 1].squared_distance));
-  const double next =
-      neighbors.count > k ? std::sqrt(static_cast<double>(neighbors[k].squared_distance)) : search_radius;
-  constexpr double kNegligible = 0.02;  // of the search radius
-  return std::max(kNegligible * search_radius, std::min(0.5 * (next - farthest), search_radius - farthest));
-}
+/// A point that has moved by less than this part of the search radius keeps what it was linked to.
+constexpr double kNegligible = 0.02;
 
 template <typename Factor, typename Fit>
-void findOne(const RegistrationProblem& problem, const NeighborSearch& search, int k, const Eigen::Vector3d& local,
-             double weight, double search_radius, const Fit& fit, Correspondence<Factor>& correspondence)
+void findOne(const RegistrationProblem& problem, const NeighborSearch& search, int k, double weight,
+             double search_radius, const Fit& fit, Correspondence<Factor>& correspondence)
 {
   correspondence.weight = 0.0;
-  correspondence.valid_within = 0.0;
+  correspondence.searched_at = correspondence.point;
   Neighbors neighbors;
-  search.nearest(problem.origin + local, std::min(k + 1, kMaxNeighbors), search_radius, neighbors);
+  search.nearest(problem.origin + correspondence.point, k, search_radius, neighbors);
   if (neighbors.count < k) {
     return;
   }
-  correspondence.searched_at = local;
-  correspondence.valid_within = k < kMaxNeighbors ? unchangedWithin(neighbors, k, search_radius) : 0.0;
-  neighbors.count = k;
   if (const auto geometry = fit(neighbors, problem.parameters)) {
-    correspondence.factor = makeFactor(*geometry, local);
+    correspondence.factor = makeFactor(*geometry, correspondence.point);
     correspondence.weight = weight;
   }
 }
@@ -56,6 +46,7 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
                    std::vector<Correspondence<Factor>>& correspondences)
 {
   correspondences.resize(features.size());
+  const double negligible = kNegligible * search_radius;
   // Each iteration writes its own element only: the result does not depend on who computes what.
 #pragma omp parallel for num_threads(problem.threads) schedule(dynamic, 64)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(features.size());
@@ -63,11 +54,10 @@ void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature
     const auto i = static_cast<std::size_t>(n);
     const Feature& feature = features[i];
     Correspondence<Factor>& correspondence = correspondences[i];
-    const Eigen::Vector3d local = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
-    correspondence.point = local;
+    correspondence.point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
     correspondence.since_reference = trajectory.sinceReference(feature.time);
-    if ((local - correspondence.searched_at).norm() >= correspondence.valid_within) {
-      findOne(problem, search, k, local, weights[i], search_radius, fit, correspondence);
+    if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
+      findOne(problem, search, k, weights[i], search_radius, fit, correspondence);
     }
   }
 }
