@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace pcl_floam {
 
@@ -76,9 +77,11 @@ struct OdometryPipeline::Impl {
   SE3 world_T_keyframe;  ///< last keyframe
   double periods = 1.0;  ///< from the last scan to this one
   double periods_since_tracked = 0.0;
-  double sweep_fraction = 1.0;  ///< duration of the sweep in periods
+  double sweep_fraction = 1.0;            ///< duration of the sweep in periods
+  Vector6 sweep_twist = Vector6::Zero();  ///< motion over the last sweep
   bool started = false;
   int failed_starts = 0;
+  std::optional<MapUse> prior_map;  ///< of a map that was there before the first scan
 
   ScanLines lines;
   ScanTiming timing;
@@ -99,7 +102,7 @@ struct OdometryPipeline::Impl {
     if (!started) {
       return start();
     }
-    if (!velocity.isKnown() && !findFirstMotion()) {
+    if (!velocity.isKnown() && !prior_map && !findFirstMotion()) {
       return startAgain();
     }
     predictMotion();
@@ -155,9 +158,9 @@ struct OdometryPipeline::Impl {
   void predictMotion() { world_T_predicted = world_T_last * velocity.motion(periods); }
 
   // Distortion Compensation, both stages (Eq. 3, 4 with the predicted motion, Eq. 12 with the optimised one)
-  void compensate(const FeatureSet& features, const Vector6& sweep_twist, FeatureSet& result)
+  static void compensate(const FeatureSet& features, const Vector6& twist, FeatureSet& result)
   {
-    pcl_floam::compensate(features, SweepMotion(sweep_twist, kReference), result);
+    pcl_floam::compensate(features, SweepMotion(twist, kReference), result);
   }
 
   // Pose Estimation (Eq. 5 to 14)
@@ -184,7 +187,7 @@ struct OdometryPipeline::Impl {
     SweepModel sweep;
     sweep.reference = kReference;
     sweep.twist = compensatedFraction() * velocity.twist();
-    if (compensatedFraction() == 0.0 || periods_since_tracked <= 0.0) {
+    if (!velocity.isKnown() || compensatedFraction() == 0.0 || periods_since_tracked <= 0.0) {
       return sweep;
     }
     if (parameters.compensation == CompensationMode::iterative) {
@@ -220,18 +223,14 @@ struct OdometryPipeline::Impl {
   /// noisier. Their mean is the better prediction.
   [[nodiscard]] Vector6 optimizedTwist() const
   {
+    if (!velocity.isKnown()) {  // in a map made before: what was estimated is how far off the first guess was
+      return Vector6::Zero();
+    }
     const Vector6 between = twistTo(report.registration.target_T_source);
     if (parameters.compensation == CompensationMode::continuous && compensatedFraction() > 0.0) {
       return 0.5 * between + 0.5 / sweep_fraction * report.registration.sweep_twist;
     }
     return between;
-  }
-
-  /// Motion over the sweep, for the second stage of the compensation.
-  [[nodiscard]] Vector6 optimizedSweepTwist() const
-  {
-    return parameters.compensation == CompensationMode::continuous ? report.registration.sweep_twist
-                                                                   : Vector6(compensatedFraction() * velocity.twist());
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -255,18 +254,18 @@ struct OdometryPipeline::Impl {
   {
     map.clear();
     FeatureSet compensated;
-    compensate(first, compensatedFraction() * twist, compensated);
-    world_T_tracked = initial_pose * instantToReference(twist);
+    sweep_twist = compensatedFraction() * twist;
+    compensate(first, sweep_twist, compensated);
+    world_T_tracked = initial_pose * instantToReference();
     world_T_keyframe = world_T_tracked;
     map.insert(compensated, world_T_tracked);
   }
 
   /// Motion from the instant of the parameters to the reference instant.
-  [[nodiscard]] SE3 instantToReference(const Vector6& twist) const
+  [[nodiscard]] SE3 instantToReference() const
   {
     // Without compensation a scan has no instants: its one pose is that of the scan as it stands.
-    const bool instants = parameters.compensation != CompensationMode::none;
-    return instants ? exp((kReference - fractionOf(parameters.pose_instant)) * sweep_fraction * twist) : SE3();
+    return exp((kReference - fractionOf(parameters.pose_instant)) * sweep_twist);
   }
 
   // Mapping Building & Distortion Compensation Update (Eq. 12)
@@ -276,14 +275,19 @@ struct OdometryPipeline::Impl {
     prediction_error.observe(world_T_predicted.inverse() * optimized, typicalRange(measured));
     if (periods_since_tracked > 0.0) {
       const Vector6 twist = optimizedTwist();
-      velocity_noise.observe(twist - velocity.twist(), periods_since_tracked);
+      if (velocity.isKnown()) {
+        velocity_noise.observe(twist - velocity.twist(), periods_since_tracked);
+      }
       velocity.set(twist);
     }
+    sweep_twist = parameters.compensation == CompensationMode::continuous
+                      ? report.registration.sweep_twist
+                      : Vector6(compensatedFraction() * velocity.twist());
     world_T_last = world_T_tracked = optimized;
     periods_since_tracked = 0.0;
-    report.keyframe = parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
+    report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
     if (report.keyframe) {
-      compensate(measured, optimizedSweepTwist(), undistorted);
+      compensate(measured, sweep_twist, undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, optimized);
       world_T_keyframe = optimized;
@@ -325,13 +329,16 @@ struct OdometryPipeline::Impl {
       return finish(TrackingState::not_started);
     }
     world_T_last = world_T_last * velocity.motion(periods);
+    if (parameters.compensation != CompensationMode::none) {
+      sweep_twist = sweep_fraction * velocity.twist();  // a blind scan has no times, but the sensor moves on
+    }
     return finish(TrackingState::predicted);
   }
 
   const OdometryReport& finish(TrackingState state)
   {
     report.state = state;
-    report.world_T_sensor = started ? world_T_last * instantToReference(velocity.twist()).inverse() : initial_pose;
+    report.world_T_sensor = started ? world_T_last * instantToReference().inverse() : initial_pose;
     report.milliseconds.total = watch.total();
     return report;
   }
@@ -383,6 +390,21 @@ const KeyframeVoxelMap& OdometryPipeline::map() const
 const OdometryParameters& OdometryPipeline::parameters() const
 {
   return impl_->parameters;
+}
+
+void OdometryPipeline::localizeIn(KeyframeVoxelMap map, const SE3& world_T_sensor, MapUse use)
+{
+  if (map.empty()) {
+    throw std::invalid_argument("the map to localise in is empty");
+  }
+  if (!world_T_sensor.isFinite()) {
+    throw std::invalid_argument("the pose to begin with is not finite");
+  }
+  reset(world_T_sensor);
+  impl_->map = std::move(map);
+  impl_->prior_map = use;
+  impl_->started = true;
+  impl_->world_T_last = impl_->world_T_tracked = impl_->world_T_keyframe = world_T_sensor;
 }
 
 void OdometryPipeline::reset(const SE3& world_T_sensor)

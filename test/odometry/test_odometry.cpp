@@ -254,6 +254,38 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
   }
 }
 
+TEST(Odometry, LocalizesInAMapMadeBefore)
+{
+  Odometry<PointXYZIRT> mapping;
+  for (int k = 0; k < kScans; ++k) {
+    mapping.track(sweep(steadyPath, k));
+  }
+  const SE3 map_T_world = steadyPath(1.0).inverse();  // the map's origin is the end of the first sweep
+  const auto otherPath = [](double t) {
+    return SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 0.4, 0.1)) * acceleratedPath(t + 3.0);
+  };
+  for (const MapUse use : {MapUse::frozen, MapUse::kept_current}) {
+    Odometry<PointXYZIRT> odometry;
+    const SE3 guess = map_T_world * otherPath(1.0) * exp((Vector6() << 0.5, -0.4, 0.2, 0.02, -0.03, 0.08).finished());
+    odometry.localizeIn(mapping.map(), guess, use);
+    for (int k = 0; k < kScans; ++k) {
+      const OdometryReport& report = odometry.track(sweep(otherPath, k));
+      EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
+      EXPECT_EQ(report.keyframe && use == MapUse::frozen, false);
+      const SE3 error = (map_T_world * otherPath(k + 1.0)).inverse() * report.world_T_sensor;
+      EXPECT_LT(error.translation.norm(), k < 2 ? 0.3 : 0.05) << "scan " << k;
+    }
+    const bool same = odometry.map().size(FeatureKind::plane) == mapping.map().size(FeatureKind::plane);
+    EXPECT_EQ(same, use == MapUse::frozen);
+  }
+}
+
+TEST(Odometry, AMapToLocalizeInMustHoldSomething)
+{
+  Odometry<PointXYZIRT> odometry;
+  EXPECT_THROW(odometry.localizeIn(KeyframeVoxelMap(), SE3()), std::invalid_argument);
+}
+
 TEST(Odometry, SettingsOutOfRangeAreRefused)
 {
   OdometryParameters parameters;

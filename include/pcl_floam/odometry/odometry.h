@@ -10,10 +10,17 @@
 #include <pcl/memory.h>
 #include <pcl/point_cloud.h>
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
 namespace pcl_floam {
+
+/// What becomes of a map that was made before.
+enum class MapUse : std::uint8_t {
+  frozen,       ///< it stays as it is: localisation whose error does not grow
+  kept_current  ///< keyframes are added to it, and what lies beyond its horizon is forgotten
+};
 
 /// The odometry for scans whose point type is known only at run time (\ref CloudView).
 /// Most users want \ref Odometry.
@@ -49,6 +56,12 @@ public:
 
   /// Forgets map and motion; the next scan starts at \p world_T_sensor.
   void reset(const SE3& world_T_sensor = {});
+
+  /// Localises the scans that follow in a map made before, in place of building one. Forgets all else.
+  /// \param map            as \ref loadMap or another odometry's \ref map give it; not empty
+  /// \param world_T_sensor of the first scan, in the map's frame: within about 2 m and 10 degrees
+  /// \throws std::invalid_argument for an empty map or a pose that is not finite.
+  void localizeIn(KeyframeVoxelMap map, const SE3& world_T_sensor, MapUse use = MapUse::frozen);
 
 private:
   struct Impl;
