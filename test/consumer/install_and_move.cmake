@@ -19,3 +19,12 @@ foreach(text IN LISTS texts)
     endif()
   endforeach()
 endforeach()
+
+# Shared libraries find each other where they are now.
+file(GLOB_RECURSE libraries ${TREE}/*.so)
+foreach(library IN LISTS libraries)
+  run_step(ldd ${library})
+  if(STEP_OUTPUT MATCHES "[^\n]*not found")
+    message(FATAL_ERROR "${library}: ${CMAKE_MATCH_0}")
+  endif()
+endforeach()
