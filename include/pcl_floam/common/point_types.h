@@ -7,6 +7,13 @@
 
 #include <cstdint>
 
+// PCL's macro has an anonymous struct in it, of which clang warns where the macro is used.
+#if defined(__clang__)
+#pragma clang diagnostic push
+#pragma clang diagnostic ignored "-Wgnu-anonymous-struct"
+#pragma clang diagnostic ignored "-Wnested-anon-types"
+#endif
+
 namespace pcl_floam {
 
 /// A lidar return as most drivers publish it.
@@ -28,6 +35,10 @@ struct EIGEN_ALIGN16 PointXYZIRT {
 };
 
 }  // namespace pcl_floam
+
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#endif
 
 POINT_CLOUD_REGISTER_POINT_STRUCT(pcl_floam::PointXYZIRT,
                                   (float, x, x)(float, y, y)(float, z, z)(float, intensity,

@@ -1,5 +1,5 @@
 /// \file feature_extractor.h
-/// Edges and planes of one scan, for every point type: the core of \ref FeatureExtraction.
+/// Edges and planes of one scan, for every point type: the core of \ref pcl_floam::FeatureExtraction.
 #pragma once
 
 #include <pcl_floam/common/cloud_view.h>

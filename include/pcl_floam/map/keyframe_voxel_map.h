@@ -26,6 +26,7 @@ enum class SearchMethod : std::uint8_t {
 
 [[nodiscard]] const char* toString(SearchMethod method);
 
+/// Settings of \ref KeyframeVoxelMap.
 struct MapParameters {
   double edge_voxel_size = 0.1;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
   double plane_voxel_size = 0.2;  ///< m, > 0. Reasonable: 0.1 to 1

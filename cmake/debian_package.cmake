@@ -1,0 +1,17 @@
+# `cpack -G DEB` in the build folder makes libpcl-floam-dev: headers, libraries and tools.
+set(CPACK_PACKAGE_NAME libpcl-floam-dev)
+set(CPACK_PACKAGE_VENDOR "pcl_floam")
+set(CPACK_PACKAGE_CONTACT "pcl_floam developers <pcl_floam@localhost>")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_GENERATOR DEB)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
+# What the headers and the link need; the shared libraries that the tools were linked with are found by dpkg-shlibdeps.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libpcl-dev (>= 1.12), libeigen3-dev (>= 3.3), libflann-dev, liblz4-dev, libceres-dev")
+find_program(PCL_FLOAM_SHLIBDEPS dpkg-shlibdeps)
+mark_as_advanced(PCL_FLOAM_SHLIBDEPS)
+if(PCL_FLOAM_SHLIBDEPS)
+  set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+endif()
+include(CPack)

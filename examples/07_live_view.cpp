@@ -1,0 +1,86 @@
+// The odometry at work: the present scan (red), the map (grey) and the way so far (green). Q closes the window.
+//
+//   ./07_live_view SCANS [--frames N] [--picture FILE.png]     (stop after N scans; save what was seen last)
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/odometry/odometry.h>
+
+#include <pcl/common/transforms.h>
+#include <pcl/conversions.h>
+#include <pcl/visualization/pcl_visualizer.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderWindowInteractor.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <string>
+
+using Cloud = pcl::PointCloud<pcl::PointXYZ>;
+using Colour = pcl::visualization::PointCloudColorHandlerCustom<pcl::PointXYZ>;
+
+namespace {
+
+/// Adds a cloud, or replaces the one of the same name.
+void show(pcl::visualization::PCLVisualizer& viewer, const Cloud::ConstPtr& cloud, const Colour& colour,
+          const std::string& name, double size)
+{
+  if (!viewer.updatePointCloud<pcl::PointXYZ>(cloud, colour, name)) {
+    viewer.addPointCloud<pcl::PointXYZ>(cloud, colour, name);
+    viewer.setPointCloudRenderingProperties(pcl::visualization::PCL_VISUALIZER_POINT_SIZE, size, name);
+  }
+}
+
+/// From behind and above, as a kite sees it.
+void follow(pcl::visualization::PCLVisualizer& viewer, const Eigen::Vector3d& at, const Eigen::Vector3d& forward)
+{
+  const Eigen::Vector3d from = at - 15.0 * forward + Eigen::Vector3d(0.0, 0.0, 25.0);
+  viewer.setCameraPosition(from.x(), from.y(), from.z(), at.x(), at.y(), at.z(), 0.0, 0.0, 1.0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+try {
+  std::size_t frames = static_cast<std::size_t>(-1);
+  std::string picture;
+  for (int i = 2; i + 1 < argc; i += 2) {
+    std::strcmp(argv[i], "--frames") == 0 ? void(frames = std::strtoul(argv[i + 1], nullptr, 10))
+                                          : void(picture = argv[i + 1]);
+  }
+  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
+  pcl_floam::OdometryPipeline odometry;
+  pcl::visualization::PCLVisualizer viewer("pcl_floam");
+  viewer.getRenderWindow()->GetInteractor()->CreateRepeatingTimer(10);  // else PCL 1.13 waits there for the user
+  auto path = pcl::make_shared<Cloud>();
+  pcl::PCLPointCloud2 blob;
+  for (std::size_t i = 0; i < std::min(frames, scans.size()) && !viewer.wasStopped(); ++i) {
+    scans.read(i, blob);
+    const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(blob), scans.stamp(i));
+
+    Cloud sensed;
+    pcl::fromPCLPointCloud2(blob, sensed);
+    auto scan = pcl::make_shared<Cloud>();
+    pcl::transformPointCloud(sensed, *scan, report.world_T_sensor.matrix<float>());
+    const Eigen::Vector3d& at = report.world_T_sensor.translation;
+    path->push_back(pcl::PointXYZ(at.cast<float>().x(), at.cast<float>().y(), at.cast<float>().z()));
+
+    if (report.keyframe) {
+      const auto map = odometry.map().cloud(pcl_floam::FeatureKind::plane);
+      show(viewer, map, Colour(map, 150, 150, 150), "map", 1.0);
+    }
+    show(viewer, scan, Colour(scan, 255, 80, 60), "scan", 1.0);
+    show(viewer, path, Colour(path, 60, 255, 90), "path", 4.0);
+    follow(viewer, at, report.world_T_sensor.rotation.col(0));
+    viewer.spinOnce(1, true);
+  }
+  if (!picture.empty()) {
+    viewer.saveScreenshot(picture);
+  }
+  while (frames > scans.size() && !viewer.wasStopped()) {  // all seen: stay open
+    viewer.spinOnce(1, true);
+  }
+  return 0;
+} catch (const pcl_floam::FileError& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
+}
