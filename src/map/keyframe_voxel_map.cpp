@@ -127,16 +127,6 @@ std::vector<Eigen::Vector3d> KeyframeVoxelMap::points(FeatureKind kind) const
   return impl_->layer(kind).points();
 }
 
-pcl::PointCloud<pcl::PointXYZ>::Ptr KeyframeVoxelMap::cloud(FeatureKind kind) const
-{
-  auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-  for (const Eigen::Vector3d& point : points(kind)) {
-    cloud->push_back(
-        pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())));
-  }
-  return cloud;
-}
-
 const MapParameters& KeyframeVoxelMap::parameters() const
 {
   return impl_->parameters;

@@ -79,6 +79,11 @@ TEST(OtherAlignment, MapsGoOutAndIn)
   map.insertPoints(FeatureKind::plane, points);
   const std::vector<Eigen::Vector3d> out = map.points(FeatureKind::plane);
   EXPECT_EQ(out.size(), map.size(FeatureKind::plane));
+  const auto cloud = map.cloud(FeatureKind::plane);
+  EXPECT_EQ(cloud->size(), out.size());
+  for (int i = 0; i < 5000; ++i) {  // until the memory of its first points is given back
+    cloud->push_back(pcl::PointXYZ(1.0F, 2.0F, 3.0F));
+  }
   const MapSearch<pcl::PointXYZ> search(map, FeatureKind::plane);
   EXPECT_EQ(search.getInputCloud()->size(), out.size());
   const TemporaryFolder folder;

@@ -80,7 +80,18 @@ public:
   [[nodiscard]] std::vector<Eigen::Vector3d> points(FeatureKind kind) const;
 
   /// As \ref points, as a cloud that PCL can save, show and filter. Single precision.
-  [[nodiscard]] pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(FeatureKind kind) const;
+  ///
+  /// Here and not in the library: a cloud's memory must be freed by code of the flags that allocated it, as Eigen
+  /// allocates in another way where -march or -mavx are given.
+  [[nodiscard]] pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(FeatureKind kind) const
+  {
+    auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+    for (const Eigen::Vector3d& point : points(kind)) {
+      cloud->push_back(
+          pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())));
+    }
+    return cloud;
+  }
 
   [[nodiscard]] const MapParameters& parameters() const;
 
