@@ -1,5 +1,6 @@
 /// \file feature_registration.h
-/// The pose estimation from edge and plane features, for every point type: the core of \ref pcl_floam::EdgePlaneRegistration.
+/// The pose estimation from edge and plane features, for every point type: the core of \ref
+/// pcl_floam::EdgePlaneRegistration.
 #pragma once
 
 #include <pcl_floam/common/se3.h>
