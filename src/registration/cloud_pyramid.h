@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 namespace pcl_floam {
@@ -45,7 +46,7 @@ public:
   void addLevel(double voxel_size, int threads);
 
 private:
-  std::vector<CloudLevel> levels_;
+  std::deque<CloudLevel> levels_;  ///< a deque: references to levels stay valid when one is added
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double extent_ = 0.0;
 };

@@ -24,6 +24,7 @@ constexpr std::size_t kCoarsestPoints = 1500;
 /// Converged when a step moves no typical point by more than this, in spacings.
 constexpr double kEpsilon = 5e-4;
 constexpr double kCoarseEpsilon = 2e-2;
+constexpr double kAtRest = 1e-5;
 
 /// Fewer iterations than this are all for the full clouds.
 constexpr int kFewestForCoarse = 4;
@@ -53,12 +54,19 @@ public:
     }
     report_.termination = Termination::iteration_limit;
     LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, run_.max_distance);
-    align(alignment, run_.max_iterations, run_.epsilon > 0.0 ? run_.epsilon : kEpsilon * alignment.spacing(), true);
+    align(alignment, run_.max_iterations, finestEpsilon(alignment.spacing()), true);
     return finish();
   }
 
 private:
   [[nodiscard]] SE3 toFrames(const SE3& pose) const { return target_T_origin_ * pose * source_T_origin_.inverse(); }
+
+  /// The user's threshold if it is the finer one, as far as single precision goes.
+  [[nodiscard]] double finestEpsilon(double spacing) const
+  {
+    const double finest = run_.epsilon > 0.0 ? std::max(run_.epsilon, kAtRest * spacing) : kEpsilon * spacing;
+    return std::min(kEpsilon * spacing, finest);
+  }
 
   /// Registers ever less thinned clouds; whatever fails there leaves the pose as it was.
   void alignThinned()

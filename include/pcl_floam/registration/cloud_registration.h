@@ -62,7 +62,7 @@ struct CloudRegistrationRun {
   int max_iterations = 50;   ///< on thinned and full clouds together; >= 1
   bool coarse_first = true;  ///< register thinned clouds first, unless the guess is close already
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
-  double epsilon = 0.0;  ///< m; converged when no point moves farther. 0: in relation to the spacing
+  double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
   int min_correspondences = 3;
   bool reciprocal = false;  ///< only matches that are each other's nearest
   RobustKernel kernel = RobustKernel::cauchy;
