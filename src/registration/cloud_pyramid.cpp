@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace pcl_floam {
 
 namespace {
+
+/// Voxels of a thinned cloud, in extents.
+constexpr double kRoughVoxel = 0.03;
 
 /// Coordinates are bounded so that their squares stay finite in single precision.
 constexpr float kLargest = 1e18F;
@@ -95,48 +99,72 @@ std::pair<Eigen::Vector3f, int> summarize(const std::vector<Eigen::Vector3f>& po
   return {mean, nearest->point};
 }
 
-}  // namespace
-
-CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+/// The means within voxels, and for each the number of the point nearest to it.
+std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::vector<Eigen::Vector3f>& points,
+                                                                     const std::vector<int>& numbers,
+                                                                     double voxel_size)
 {
-  const std::vector<int> usable = usablePoints(cloud, selectable);
-  const auto position = [&](int i) {
-    const auto n = static_cast<std::size_t>(i);
-    return Eigen::Vector3d(cloud.x(n), cloud.y(n), cloud.z(n));
-  };
-  for (const int i : usable) {
-    origin_ += position(i);
-  }
-  origin_ /= std::max(1.0, static_cast<double>(usable.size()));
-  std::vector<Eigen::Vector3f> points;
-  points.reserve(usable.size());
-  double squares = 0.0;
-  for (const int i : usable) {
-    const Eigen::Vector3d relative = position(i) - origin_;
-    squares += relative.squaredNorm();
-    points.emplace_back(relative.cast<float>());
-  }
-  extent_ = std::sqrt(squares / std::max(1.0, static_cast<double>(usable.size())));
-  levels_.push_back(makeLevel(points, usable, threads));
-}
-
-void CloudPyramid::addLevel(double voxel_size, int threads)
-{
-  const CloudLevel& finer = levels_.back();
-  const std::vector<Eigen::Vector3f>& points = finer.tree.points();
   const std::vector<VoxelMember> members = sortIntoVoxels(points, voxel_size);
-  std::vector<Eigen::Vector3f> means;
-  std::vector<int> numbers;
+  std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> result;
   for (std::size_t first = 0; first < members.size();) {
     std::size_t last = first + 1;
     while (last < members.size() && members[last].voxel == members[first].voxel) {
       ++last;
     }
     const auto [mean, nearest] = summarize(points, &members[first], members.data() + last);
-    means.push_back(mean);
-    numbers.push_back(finer.number[static_cast<std::size_t>(nearest)]);
+    result.first.push_back(mean);
+    result.second.push_back(numbers[static_cast<std::size_t>(nearest)]);
     first = last;
   }
+  return result;
+}
+
+}  // namespace
+
+CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  const Points points = takePoints(cloud, selectable);
+  levels_.push_back(makeLevel(points.position, points.number, threads));
+}
+
+CloudPyramid CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  CloudPyramid pyramid;
+  const Points points = pyramid.takePoints(cloud, selectable);
+  const double voxel_size = std::max(kRoughVoxel * pyramid.extent_, std::numeric_limits<double>::min());
+  const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
+  pyramid.levels_.push_back(makeLevel(means, numbers, threads));
+  return pyramid;
+}
+
+CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
+{
+  Points points;
+  points.number = usablePoints(cloud, selectable);
+  const auto position = [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    return Eigen::Vector3d(cloud.x(n), cloud.y(n), cloud.z(n));
+  };
+  const double count = std::max(1.0, static_cast<double>(points.number.size()));
+  for (const int i : points.number) {
+    origin_ += position(i);
+  }
+  origin_ /= count;
+  points.position.reserve(points.number.size());
+  double squares = 0.0;
+  for (const int i : points.number) {
+    const Eigen::Vector3d relative = position(i) - origin_;
+    squares += relative.squaredNorm();
+    points.position.emplace_back(relative.cast<float>());
+  }
+  extent_ = std::sqrt(squares / count);
+  return points;
+}
+
+void CloudPyramid::addLevel(double voxel_size, int threads)
+{
+  const CloudLevel& finer = levels_.back();
+  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel_size);
   levels_.push_back(makeLevel(means, numbers, threads));
 }
 

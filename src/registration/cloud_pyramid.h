@@ -30,6 +30,10 @@ public:
   /// \param selectable one flag per point of the cloud; empty: all
   CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
 
+  /// A pyramid whose level 0 is thinned already, for clouds of which only a rough picture is needed.
+  [[nodiscard]] static CloudPyramid thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                            int threads);
+
   [[nodiscard]] bool empty() const { return levels_[0].tree.empty(); }
 
   /// The centroid, in the cloud's frame.
@@ -46,6 +50,14 @@ public:
   void addLevel(double voxel_size, int threads);
 
 private:
+  struct Points {
+    std::vector<Eigen::Vector3f> position;  ///< relative to the origin
+    std::vector<int> number;                ///< in the cloud
+  };
+
+  CloudPyramid() = default;
+  Points takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
+
   std::deque<CloudLevel> levels_;  ///< a deque: references to levels stay valid when one is added
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double extent_ = 0.0;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -26,7 +27,15 @@ constexpr double kEpsilon = 5e-4;
 constexpr double kCoarseEpsilon = 2e-2;
 constexpr double kAtRest = 1e-5;
 
-/// Fewer iterations than this are all for the full clouds.
+/// How much directions along surfaces count: at last enough to hold a cloud where surfaces do not, too little to pull at
+/// one that may slide; on thinned clouds, where the slide is what matters, as much as those across them at first.
+constexpr double kAlong = 1e-3;
+constexpr double kAlongFalls = 0.1;  ///< from level to level
+
+/// On each thinned level: many, as each is cheap and points drawn to points move slowly.
+constexpr int kCoarseIterations = 60;
+
+/// Whoever asks for fewer iterations than this wants to see them one by one.
 constexpr int kFewestForCoarse = 4;
 
 class Registration {
@@ -44,18 +53,31 @@ public:
 
   RegistrationReport run()
   {
-    const SE3 guess = pose_;
-    if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
+    if (run_.max_iterations >= kFewestForCoarse) {
       const StartChoice choice(source_.level(0), target_.level(0), run_.max_distance, run_.threads);
-      if (!choice.isClose(guess)) {
+      if (!choice.isClose(pose_)) {
+        const SE3 guess = pose_;
         alignThinned();
         pose_ = choice.better(pose_, guess);
       }
     }
     report_.termination = Termination::iteration_limit;
-    LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, run_.max_distance);
+    LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, kAlong);
     align(alignment, run_.max_iterations, finestEpsilon(alignment.spacing()), true);
     return finish();
+  }
+
+  SE3 runRoughly()
+  {
+    const StartChoice choice(source_.level(0), target_.level(0), run_.max_distance, run_.threads);
+    const SE3 guess = pose_;
+    if (choice.isClose(guess)) {
+      return run_.guess;
+    }
+    alignThinned();
+    LevelAlignment alignment(source_.level(0), target_.level(0), run_, false, kAlongFalls);
+    align(alignment, kCoarseIterations, kCoarseEpsilon * alignment.spacing(), false);
+    return toFrames(choice.better(pose_, guess));
   }
 
 private:
@@ -79,7 +101,7 @@ private:
       source_.addLevel(voxel, run_.threads);
       voxel *= 2.0;
     }
-    const int most = run_.max_iterations / 2;
+    double along = 1.0;
     for (std::size_t level = std::min(source_.levels(), target_.levels()) - 1; level > 0; --level) {
       const CloudLevel& source = source_.level(level);
       const CloudLevel& target = target_.level(level);
@@ -87,11 +109,10 @@ private:
           2.0 * target.spacing > run_.max_distance) {
         continue;
       }
-      LevelAlignment alignment(source, target, run_, false, run_.max_distance);
-      align(alignment, most, kCoarseEpsilon * alignment.spacing(), false);
-      if (report_.termination == Termination::degenerate) {
-        return;
-      }
+      LevelAlignment alignment(source, target, run_, false, along);
+      along = std::max(kAlong, kAlongFalls * along);
+      align(alignment, kCoarseIterations, kCoarseEpsilon * alignment.spacing(), false);
+      report_.iterations = 0;
     }
   }
 
@@ -124,15 +145,14 @@ private:
     const SE3 before = toFrames(pose_);
     pose_.rotation = nearestRotation(expSO3(step.tail<3>()) * pose_.rotation);
     pose_.translation += step.head<3>();
-    if (!run_.iterated) {
+    if (!run_.iterated || !finest) {
       return false;
     }
     CloudIteration iteration;
     iteration.target_T_source = toFrames(pose_);
     iteration.step = iteration.target_T_source * before.inverse();
-    iteration.finest = finest;
     iteration.matches = &alignment.matches();
-    return run_.iterated(iteration) && finest;
+    return run_.iterated(iteration);
   }
 
   RegistrationReport finish()
@@ -171,6 +191,13 @@ PreparedCloud::PreparedCloud(const CloudView& cloud, const std::vector<std::uint
 {
 }
 
+PreparedCloud PreparedCloud::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  return PreparedCloud(std::make_unique<CloudPyramid>(CloudPyramid::thinned(cloud, selectable, threads)));
+}
+
+PreparedCloud::PreparedCloud(std::unique_ptr<CloudPyramid> pyramid) : pyramid_(std::move(pyramid)) {}
+
 PreparedCloud::~PreparedCloud() = default;
 PreparedCloud::PreparedCloud(PreparedCloud&& other) noexcept = default;
 PreparedCloud& PreparedCloud::operator=(PreparedCloud&& other) noexcept = default;
@@ -201,6 +228,15 @@ RegistrationReport registerClouds(const PreparedCloud& source, const PreparedClo
     return Registration(source.pyramid(), target.pyramid(), run).run();
   }
   return report;
+}
+
+SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target, const CloudRegistrationRun& run)
+{
+  if (!run.guess.isFinite() || target.empty() || source.empty()) {
+    return run.guess;
+  }
+  const SE3 result = Registration(source.pyramid(), target.pyramid(), run).runRoughly();
+  return result.isFinite() ? result : run.guess;
 }
 
 }  // namespace pcl_floam

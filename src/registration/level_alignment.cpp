@@ -14,10 +14,6 @@ namespace {
 
 constexpr std::size_t kChunk = 512;
 
-/// How much a direction along a surface counts against the one across it: enough to hold a cloud where surfaces do
-/// not, too little to pull at a surface that may slide.
-constexpr double kAlong = 1e-3;
-
 /// Matches may be this many spacings apart, and this many times the median distance while that is large.
 constexpr double kGateSpacings = 3.0;
 constexpr double kGateMedians = 3.0;
@@ -54,13 +50,14 @@ AlignmentSums& AlignmentSums::operator+=(const AlignmentSums& other)
 }
 
 LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
-                               bool finest, double search_distance)
+                               bool finest, double along)
     : source_(source),
       target_(target),
       run_(run),
       finest_(finest),
+      along_(along),
       spacing_(std::max(source.spacing, target.spacing)),
-      gate_(std::min(search_distance, run.max_distance)),
+      gate_(run.max_distance),
       nearest_(source.tree.size(), -1),
       match_(source.tree.size(), -1),
       squared_distance_(source.tree.size(), 0.0F),
@@ -178,14 +175,14 @@ LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i
   const auto j = static_cast<std::size_t>(match_[i]);
   LocalShape turned = source_.shapes[i];
   turned.axis = (pose.rotation * turned.axis.cast<double>()).cast<float>();
-  const Eigen::Matrix3d c = target_.shapes[j].covariance(kAlong) + turned.covariance(kAlong);
+  const Eigen::Matrix3d c = target_.shapes[j].covariance(along_) + turned.covariance(along_);
   const Eigen::Vector3d difference =
       pose * source_.tree.points()[i].cast<double>() - target_.tree.points()[j].cast<double>();
-  // M = 2 kAlong c^-1: one across two parallel planes.
+  // M = 2 along_ c^-1: one across two parallel planes.
   const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
   const double xy = c(0, 2) * c(1, 2) - c(0, 1) * c(2, 2);
   const double xz = c(0, 1) * c(1, 2) - c(0, 2) * c(1, 1);
-  const double scale = 2.0 * kAlong / (c(0, 0) * xx + c(0, 1) * xy + c(0, 2) * xz);
+  const double scale = 2.0 * along_ / (c(0, 0) * xx + c(0, 1) * xy + c(0, 2) * xz);
   Eigen::Matrix3d m;
   m(0, 0) = scale * xx;
   m(0, 1) = m(1, 0) = scale * xy;

@@ -31,9 +31,9 @@ struct AlignmentSums {
 /// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
 class LevelAlignment {
 public:
-  /// \param search_distance m, how far apart matches may be at first
+  /// \param along how much a direction along a surface counts against the one across it: 1 draws points to points
   LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
-                 double search_distance);
+                 double along);
 
   /// Finds the matches at a pose and sums up what they say.
   /// \param to_frames from the pose between the origins to the one between the clouds' frames
@@ -91,6 +91,7 @@ private:
   const CloudLevel& target_;
   const CloudRegistrationRun& run_;
   bool finest_;
+  double along_;
   double spacing_;
   double gate_;               ///< m; pairs farther apart are no matches
   double scale_ = 0.0;        ///< of the robust kernel, m

@@ -25,6 +25,9 @@ public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
   ///                   exactly (0, 0, 0) if there are several: they stand for "no return".
   PreparedCloud(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
+  /// Only what \ref alignRoughly needs: a few thousand points.
+  [[nodiscard]] static PreparedCloud thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                             int threads);
   ~PreparedCloud();
   PreparedCloud(PreparedCloud&& other) noexcept;
   PreparedCloud& operator=(PreparedCloud&& other) noexcept;
@@ -37,6 +40,8 @@ public:
   [[nodiscard]] CloudPyramid& pyramid() const { return *pyramid_; }
 
 private:
+  explicit PreparedCloud(std::unique_ptr<CloudPyramid> pyramid);
+
   std::unique_ptr<CloudPyramid> pyramid_;
 };
 
@@ -47,11 +52,10 @@ struct PointMatch {
   float squared_distance = 0.0F;  ///< m^2
 };
 
-/// What one iteration did.
+/// What one iteration on the full clouds did.
 struct CloudIteration {
   SE3 step;             ///< applied on the left of the previous estimate
   SE3 target_T_source;  ///< the estimate, including the step
-  bool finest = true;   ///< false while thinned clouds are registered
   const std::vector<PointMatch>* matches = nullptr;  ///< those that were used; only if `wants_matches`
 };
 
@@ -59,8 +63,9 @@ struct CloudIteration {
 struct CloudRegistrationRun {
   SE3 guess;  ///< target_T_source
   int threads = 1;
-  int max_iterations = 50;   ///< on thinned and full clouds together; >= 1
-  bool coarse_first = true;  ///< register thinned clouds first, unless the guess is close already
+  /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
+  /// iterations are asked for that it is them that matter (below 4).
+  int max_iterations = 30;
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
   double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
   int min_correspondences = 3;
@@ -83,5 +88,10 @@ struct CloudRegistrationRun {
 /// Bit-identical for every number of threads.
 [[nodiscard]] RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,
                                                 const CloudRegistrationRun& run);
+
+/// Where a registration by other means should start: the guess if it is close, else what registering thinned clouds
+/// comes to, if that is nearer the target than the guess. Takes a few milliseconds.
+[[nodiscard]] SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target,
+                               const CloudRegistrationRun& run);
 
 }  // namespace pcl_floam

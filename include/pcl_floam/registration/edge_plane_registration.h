@@ -33,17 +33,20 @@ namespace pcl_floam {
 /// - Features set by setSourceFeatures(), or those of the source if both clouds are lidar scans with scan lines,
 ///   against the map set by setInputTargetMap() or the target's features: the paper's way (\ref registerFeatures).
 /// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
-///   first thinned and then in full, with no length that is not relative to the clouds' spacing.
+///   with no length that is not relative to the clouds' spacing.
+///
+/// Either starts with thinned clouds if the guess is not close, unless fewer than 4 iterations are asked for.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
-/// - `setMaximumIterations` (default here 30; thinned clouds included, at most half): reaching it is a success.
+/// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
 /// - `setMaxCorrespondenceDistance`: matches are never farther apart. By default they may be at first, and then follow
 ///   the typical distance.
 /// - `setTransformationEpsilon` (a *squared* translation), `setTransformationRotationEpsilon` (a *cosine*),
 ///   `setEuclideanFitnessEpsilon` (relative change of the mean squared distance) and those of getConvergeCriteria() end
 ///   it as they end ICP. Unset, it ends when no point moves by more than a small fraction of the spacing.
 /// - Rejectors run in each iteration, reciprocal matches are honoured, and the visualisation callback is called once an
-///   iteration. While thinned clouds are registered, the correspondences name the points nearest to the voxels' means.
+///   iteration on the full clouds. Rejectors see the thinned clouds' matches, too: these name the points nearest to the
+///   voxels' means.
 /// - A search object set by `setSearchMethodTarget` is used as it is if it is told not to be recomputed, is of a class
 ///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
 ///   source's search object, reciprocal matches make no use: they come from a tree of the library's own.
@@ -123,6 +126,7 @@ private:
   struct Target {
     std::unique_ptr<KeyframeVoxelMap> features;  ///< of a cloud with scan lines
     std::unique_ptr<PreparedCloud> points;       ///< of any cloud, made when it is first needed
+    std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
   };
 
   void checkIndices();
@@ -134,6 +138,7 @@ private:
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
   [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
+  [[nodiscard]] SE3 roughPose(const SE3& guess);
   [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
   [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess);
   void runBaseLoop(PointCloudSource& output, const Matrix4& guess);

@@ -71,15 +71,35 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   return parameters;
 }
 
+/// Where to start on the features, which must be near theirs already.
+template <typename PointSource, typename PointTarget, typename Scalar>
+SE3 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::roughPose(const SE3& guess)
+{
+  constexpr int kFewIterations = 4;
+  if (target_map_ || source_features_ || this->max_iterations_ < kFewIterations) {
+    return guess;
+  }
+  if (!prepared_target_->thinned) {
+    prepared_target_->thinned = std::make_unique<PreparedCloud>(
+        PreparedCloud::thinned(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_));
+  }
+  CloudRegistrationRun run;
+  run.guess = guess;
+  run.threads = threads_;
+  run.max_distance = this->corr_dist_threshold_;
+  return alignRoughly(PreparedCloud::thinned(viewOf(*this->input_), selectableSource(), threads_),
+                      *prepared_target_->thinned, run);
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess,
                                                                                                FeatureSet& source)
 {
   const KeyframeVoxelMap& map = *targetFeatures();
   RegistrationRun run;
-  run.guess = guess;
+  run.guess = roughPose(guess);
   run.threads = threads_;
-  SE3 last = guess;
+  SE3 last = run.guess;
   run.recompensate = [this, &last](const SE3& target_T_source, FeatureSet&) {
     last = target_T_source;
     showIteration(target_T_source, nullptr);

@@ -162,7 +162,7 @@ bool EdgePlaneRegistration<PointSource, PointTarget, Scalar>::iterated(const Clo
   this->previous_transformation_ = this->transformation_;
   this->transformation_ = iteration.step.template matrix<Scalar>();
   showIteration(iteration.target_T_source, iteration.matches);
-  if (!iteration.finest || !hasCriteriaOfItsOwn()) {
+  if (!hasCriteriaOfItsOwn()) {
     return false;
   }
   this->correspondences_->clear();
