@@ -33,7 +33,7 @@ constexpr double kAlong = 1e-3;
 constexpr double kAlongFalls = 0.1;  ///< from level to level
 
 /// On each thinned level: many, as each is cheap and points drawn to points move slowly.
-constexpr int kCoarseIterations = 60;
+constexpr int kCoarseIterations = 100;
 
 /// Whoever asks for fewer iterations than this wants to see them one by one.
 constexpr int kFewestForCoarse = 4;
@@ -102,18 +102,26 @@ private:
       voxel *= 2.0;
     }
     double along = 1.0;
-    for (std::size_t level = std::min(source_.levels(), target_.levels()) - 1; level > 0; --level) {
+    for (std::size_t level = std::min(source_.levels(), target_.levels()); level-- > 0;) {
       const CloudLevel& source = source_.level(level);
       const CloudLevel& target = target_.level(level);
-      if (source.tree.size() < kFewestPoints || target.tree.size() < kFewestPoints ||
-          2.0 * target.spacing > run_.max_distance) {
+      const bool too_thin = level > 0 && std::min(source.tree.size(), target.tree.size()) < kFewestPoints;
+      const bool too_large = level == 0 && std::max(source.tree.size(), target.tree.size()) > kCoarsestPoints;
+      if (too_thin || too_large || 2.0 * target.spacing > run_.max_distance) {
         continue;
       }
-      LevelAlignment alignment(source, target, run_, false, along);
+      if (along == 1.0) {
+        alignThinned(LevelAlignment(source, target, run_, false, along, false));
+      }
+      alignThinned(LevelAlignment(source, target, run_, false, along));
       along = std::max(kAlong, kAlongFalls * along);
-      align(alignment, kCoarseIterations, kCoarseEpsilon * alignment.spacing(), false);
-      report_.iterations = 0;
     }
+  }
+
+  void alignThinned(LevelAlignment alignment)
+  {
+    align(alignment, kCoarseIterations, kCoarseEpsilon * alignment.spacing(), false);
+    report_.iterations = 0;
   }
 
   /// Iterates on one level until it has converged or \p most iterations were done in all.

@@ -50,12 +50,13 @@ AlignmentSums& AlignmentSums::operator+=(const AlignmentSums& other)
 }
 
 LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
-                               bool finest, double along)
+                               bool finest, double along, bool robust)
     : source_(source),
       target_(target),
       run_(run),
       finest_(finest),
       along_(along),
+      robust_(robust),
       spacing_(std::max(source.spacing, target.spacing)),
       gate_(run.max_distance),
       nearest_(source.tree.size(), -1),
@@ -99,7 +100,7 @@ void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)
     const Eigen::Vector3d local = pose * source_.tree.points()[i].cast<double>();
     const auto found = position.find(run_.search(source_.number[i], frame_T_origin * local));
     if (found != position.end()) {
-      const Eigen::Vector3d& there =
+      const Eigen::Vector3d there =
           target_.tree.points()[static_cast<std::size_t>(found->second)].cast<double>();
       const double squared = (there - local).squaredNorm();
       if (squared <= gate_ * gate_) {
@@ -117,7 +118,7 @@ void LevelAlignment::keepReciprocal(const SE3& pose)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
     const auto i = static_cast<std::size_t>(n);
     if (match_[i] >= 0) {
-      const Eigen::Vector3d& there = target_.tree.points()[static_cast<std::size_t>(match_[i])].cast<double>();
+      const Eigen::Vector3d there = target_.tree.points()[static_cast<std::size_t>(match_[i])].cast<double>();
       float limit = std::numeric_limits<float>::max();
       if (source_.tree.nearest((back * there).cast<float>(), limit) != static_cast<int>(i)) {
         match_[i] = -1;
@@ -128,6 +129,9 @@ void LevelAlignment::keepReciprocal(const SE3& pose)
 
 void LevelAlignment::narrow()
 {
+  if (!robust_) {
+    return;
+  }
   std::vector<float> squares;
   squares.reserve(match_.size());
   for (std::size_t i = 0; i < match_.size(); ++i) {
@@ -176,8 +180,10 @@ LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i
   LocalShape turned = source_.shapes[i];
   turned.axis = (pose.rotation * turned.axis.cast<double>()).cast<float>();
   const Eigen::Matrix3d c = target_.shapes[j].covariance(along_) + turned.covariance(along_);
-  const Eigen::Vector3d difference =
-      pose * source_.tree.points()[i].cast<double>() - target_.tree.points()[j].cast<double>();
+  const auto onSurface = [](const CloudLevel& level, std::size_t point) {
+    return Eigen::Vector3d((level.tree.points()[point] + level.shapes[point].to_surface).cast<double>());
+  };
+  const Eigen::Vector3d difference = pose * onSurface(source_, i) - onSurface(target_, j);
   // M = 2 along_ c^-1: one across two parallel planes.
   const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
   const double xy = c(0, 2) * c(1, 2) - c(0, 1) * c(2, 2);
@@ -221,7 +227,8 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, AlignmentSums& s
 {
   const Residual& r = residuals_[i];
   const auto squared = static_cast<double>(r.squared);
-  const double robust = robustWeight(run_.kernel, squared, scale_);
+  const RobustKernel kernel = robust_ ? run_.kernel : RobustKernel::none;
+  const double robust = robustWeight(kernel, squared, scale_);
   Eigen::Matrix3f symmetric;
   symmetric << r.xx, r.xy, r.xz, r.xy, r.yy, r.yz, r.xz, r.yz, r.zz;
   const Eigen::Matrix3d m = robust * symmetric.cast<double>();
@@ -239,7 +246,7 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, AlignmentSums& s
   }
   sums.gradient.head<3>() += pull;
   sums.gradient.tail<3>() += arm.cross(pull);
-  sums.cost += 0.5 * robustCost(run_.kernel, squared, scale_);
+  sums.cost += 0.5 * robustCost(kernel, squared, scale_);
   sums.weighted_squares += robust * squared;
   sums.weight += m.trace();
   const ShapeKind kind = target_.shapes[static_cast<std::size_t>(match_[i])].kind;

@@ -32,8 +32,9 @@ struct AlignmentSums {
 class LevelAlignment {
 public:
   /// \param along how much a direction along a surface counts against the one across it: 1 draws points to points
+  /// \param robust whether far matches are left out and large residuals count less
   LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
-                 double along);
+                 double along, bool robust = true);
 
   /// Finds the matches at a pose and sums up what they say.
   /// \param to_frames from the pose between the origins to the one between the clouds' frames
@@ -92,6 +93,7 @@ private:
   const CloudRegistrationRun& run_;
   bool finest_;
   double along_;
+  bool robust_;
   double spacing_;
   double gate_;               ///< m; pairs farther apart are no matches
   double scale_ = 0.0;        ///< of the robust kernel, m

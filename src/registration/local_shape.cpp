@@ -16,7 +16,10 @@ constexpr int kNeighbors = 14;
 constexpr double kLineRatio = 0.03;
 
 /// A plane's smallest eigenvalue is at most this times the second.
-constexpr double kPlaneRatio = 0.3;
+constexpr double kPlaneRatio = 0.1;
+
+/// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
+constexpr std::size_t kFewPoints = 1000;
 
 LocalShape shapeOf(const PointTree& tree, const NearestPoints& neighbors)
 {
@@ -46,6 +49,13 @@ LocalShape shapeOf(const PointTree& tree, const NearestPoints& neighbors)
   } else if (eigenvalues[0] < kPlaneRatio * eigenvalues[1]) {
     shape.kind = ShapeKind::plane;
     shape.axis = solver.eigenvectors().col(0).cast<float>();
+  }
+  const Eigen::Vector3d to_centre = tree.size() < kFewPoints ? Eigen::Vector3d::Zero() : Eigen::Vector3d(sum / count);
+  const Eigen::Vector3d axis = shape.axis.cast<double>();
+  if (shape.kind == ShapeKind::plane) {
+    shape.to_surface = (axis * axis.dot(to_centre)).cast<float>();
+  } else if (shape.kind == ShapeKind::line) {
+    shape.to_surface = (to_centre - axis * axis.dot(to_centre)).cast<float>();
   }
   if (!shape.axis.allFinite()) {
     shape = LocalShape();

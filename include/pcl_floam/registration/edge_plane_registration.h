@@ -35,6 +35,8 @@ namespace pcl_floam {
 /// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
 ///   with no length that is not relative to the clouds' spacing.
 ///
+/// Should scans have too few features in common, all their points are tried, too.
+///
 /// Either starts with thinned clouds if the guess is not close, unless fewer than 4 iterations are asked for.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:

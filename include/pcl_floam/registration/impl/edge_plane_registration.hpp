@@ -153,7 +153,10 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
       source = pointFeatures(viewOf(*this->input_), selectableSource());
     }
     if (!source.planes.empty() || !source.edges.empty()) {
-      return registerByFeatures(guess, source);
+      const RegistrationReport report = registerByFeatures(guess, source);
+      if (report.hasConverged() || target_map_ || source_features_) {
+        return report;
+      }
     }
   }
   return registerByPoints(guess);
@@ -192,6 +195,9 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
     start.rotation = nearestRotation(start.rotation);
   }
   report_ = registerSource(start);
+  if (!report_.hasConverged()) {
+    report_.target_T_source = start.isFinite() ? start : SE3();
+  }
   concludeCriteria();
   this->final_transformation_ = Matrix4::Identity();
   if (this->converged_) {
