@@ -53,7 +53,7 @@ public:
 
   RegistrationReport run()
   {
-    if (run_.max_iterations >= kFewestForCoarse) {
+    if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
       const StartChoice choice(source_.level(0), target_.level(0), run_.max_distance, run_.threads);
       if (!choice.isClose(pose_)) {
         const SE3 guess = pose_;

@@ -12,6 +12,10 @@ namespace {
 /// Enough for a steady normal, few enough to stay local.
 constexpr int kNeighbors = 14;
 
+/// For what looks like a line at first: a scanner's points lie closer along its scan lines than across them, and these
+/// are no lines of the scene.
+constexpr int kMoreNeighbors = 40;
+
 /// A line's second eigenvalue is at most this times the largest: half a disc, a plane's border, has 0.28.
 constexpr double kLineRatio = 0.03;
 
@@ -88,6 +92,10 @@ LocalShapes findLocalShapes(const PointTree& tree, int threads)
     tree.nearest(tree.points()[i], kNeighbors, neighbors);
     shapes.shape[i] = shapeOf(tree, neighbors);
     radii[i] = std::sqrt(neighbors.squared_distance[static_cast<std::size_t>(neighbors.count - 1)]);
+    if (shapes.shape[i].kind == ShapeKind::line) {
+      tree.nearest(tree.points()[i], kMoreNeighbors, neighbors);
+      shapes.shape[i] = shapeOf(tree, neighbors);
+    }
   }
   shapes.spacing = spacingFrom(radii);
   return shapes;

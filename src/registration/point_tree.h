@@ -12,7 +12,7 @@ namespace pcl_floam {
 
 /// The nearest points of one query, nearest first. Fixed room: no allocation.
 struct NearestPoints {
-  static constexpr int kCapacity = 32;
+  static constexpr int kCapacity = 40;
 
   std::array<float, kCapacity> squared_distance;
   std::array<int, kCapacity> index;

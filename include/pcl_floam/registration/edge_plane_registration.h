@@ -11,6 +11,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/registration/icp.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -139,10 +140,12 @@ private:
   [[nodiscard]] bool hasSearchOfItsOwn() const;
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
   [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
+  [[nodiscard]] int iterationLimit() const { return std::max(1, this->max_iterations_); }
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
   [[nodiscard]] SE3 roughPose(const SE3& guess);
   [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
-  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess);
+  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess, int max_iterations, bool coarse_first);
+  [[nodiscard]] RegistrationReport finishByPoints(const RegistrationReport& by_features);
   void runBaseLoop(PointCloudSource& output, const Matrix4& guess);
   void setUpCriteria();
   void concludeCriteria();

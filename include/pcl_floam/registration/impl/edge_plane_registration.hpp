@@ -60,7 +60,7 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featureRegistrationParameters() const
 {
   RegistrationParameters parameters = parameters_;
-  parameters.max_iterations = std::max(1, this->max_iterations_);
+  parameters.max_iterations = iterationLimit();
   parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
   if (this->transformation_epsilon_ > 0.0) {
     parameters.translation_epsilon = std::sqrt(this->transformation_epsilon_);
@@ -113,14 +113,15 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess)
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess, int max_iterations, bool coarse_first)
 {
   const PreparedCloud& target = targetPoints();
   const PreparedCloud source(viewOf(*this->input_), selectableSource(), threads_);
   CloudRegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
-  run.max_iterations = std::max(1, this->max_iterations_);
+  run.max_iterations = max_iterations;
+  run.coarse_first = coarse_first;
   run.max_distance = this->corr_dist_threshold_;
   run.epsilon = std::sqrt(std::max(0.0, this->transformation_epsilon_));
   run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
@@ -135,6 +136,26 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   }
   run.iterated = [this](const CloudIteration& iteration) { return iterated(iteration); };
   return registerClouds(source, target, run);
+}
+
+/// A few iterations with all points of two scans, after those with their features: thousands of features find the pose,
+/// all points tell it more exactly.
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::finishByPoints(
+    const RegistrationReport& by_features)
+{
+  constexpr int kAFew = 6;
+  const int left = std::min(kAFew, iterationLimit() - by_features.iterations);
+  if (left < 1) {
+    return by_features;
+  }
+  RegistrationReport report = registerByPoints(by_features.target_T_source, left, false);
+  if (!report.hasConverged()) {
+    return by_features;
+  }
+  report.iterations += by_features.iterations;
+  report.termination = by_features.termination;
+  return report;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -154,12 +175,15 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     }
     if (!source.planes.empty() || !source.edges.empty()) {
       const RegistrationReport report = registerByFeatures(guess, source);
-      if (report.hasConverged() || target_map_ || source_features_) {
+      if (target_map_ || source_features_) {
         return report;
+      }
+      if (report.hasConverged()) {
+        return finishByPoints(report);
       }
     }
   }
-  return registerByPoints(guess);
+  return registerByPoints(guess, iterationLimit(), true);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
