@@ -17,9 +17,6 @@ constexpr double kNoInformation = 1e-9;
 /// Added to all eigenvalues, as a share of the largest: keeps steps along the weakest directions short.
 constexpr double kDamping = 1e-7;
 
-/// Directions below this share are weak: what holds them is at most the pull along surfaces.
-constexpr double kWeak = 5e-3;
-
 }  // namespace
 
 AlignmentAnalysis::AlignmentAnalysis(const AlignmentSums& sums, double extent) : sums_(sums)
@@ -45,14 +42,14 @@ Vector6 AlignmentAnalysis::step() const
   return scale_.asDiagonal() * solution;
 }
 
-void AlignmentAnalysis::describe(const Eigen::Vector3d& arm, RegistrationReport& report) const
+void AlignmentAnalysis::describe(const Eigen::Vector3d& arm, double weak, RegistrationReport& report) const
 {
   report.cost = sums_.cost;
   const double variance = sums_.weight > 0.0 ? sums_.weighted_squares / sums_.weight : 0.0;
   report.residual_rms = std::sqrt(variance);
   const double largest = std::max(eigenvalues_[5], 1e-300);
   report.weak_directions.clear();
-  for (int i = 0; i < 6 && eigenvalues_[i] < kWeak * largest; ++i) {
+  for (int i = 0; i < 6 && eigenvalues_[i] < weak * largest; ++i) {
     report.weak_directions.push_back({eigenvectors_.col(i), eigenvalues_[i]});
   }
   // A perturbation (t, w) about the source's origin is (t + w x arm, w) about the centroid.

@@ -21,8 +21,9 @@ public:
 
   /// Fills in cost, residual, information, covariance (about the source's origin) and weak directions (about its
   /// centroid).
-  /// \param arm from the source's origin to its centroid, in the target's axes
-  void describe(const Eigen::Vector3d& arm, RegistrationReport& report) const;
+  /// \param arm  from the source's origin to its centroid, in the target's axes
+  /// \param weak share of the largest eigenvalue below which a direction is weak
+  void describe(const Eigen::Vector3d& arm, double weak, RegistrationReport& report) const;
 
 private:
   using Matrix = Eigen::Matrix<double, 6, 6>;

@@ -40,9 +40,9 @@ std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uin
     }
   }
   if (zeros > 1 && zeros < usable.size()) {
-    usable.erase(std::remove_if(usable.begin(), usable.end(),
-                                [&](int i) { return isZero(cloud, static_cast<std::size_t>(i)); }),
-                 usable.end());
+    usable.erase(
+        std::remove_if(usable.begin(), usable.end(), [&](int i) { return isZero(cloud, static_cast<std::size_t>(i)); }),
+        usable.end());
   }
   return usable;
 }
@@ -101,8 +101,7 @@ std::pair<Eigen::Vector3f, int> summarize(const std::vector<Eigen::Vector3f>& po
 
 /// The means within voxels, and for each the number of the point nearest to it.
 std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::vector<Eigen::Vector3f>& points,
-                                                                     const std::vector<int>& numbers,
-                                                                     double voxel_size)
+                                                                     const std::vector<int>& numbers, double voxel_size)
 {
   const std::vector<VoxelMember> members = sortIntoVoxels(points, voxel_size);
   std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> result;

@@ -27,10 +27,17 @@ constexpr double kEpsilon = 5e-4;
 constexpr double kCoarseEpsilon = 2e-2;
 constexpr double kAtRest = 1e-5;
 
-/// How much directions along surfaces count: at last enough to hold a cloud where surfaces do not, too little to pull at
-/// one that may slide; on thinned clouds, where the slide is what matters, as much as those across them at first.
+/// How much directions along surfaces count: at last enough to hold a cloud where surfaces do not, too little to pull
+/// at one that may slide; on thinned clouds, where the slide is what matters, as much as those across them at first.
 constexpr double kAlong = 1e-3;
 constexpr double kAlongFalls = 0.1;  ///< from level to level
+
+/// Directions that hold less well than this many times a slide along a plane are reported as weak.
+constexpr double kWeak = 5.0;
+
+/// Few points are key points rather than samples of surfaces: each tells a place, not only a surface.
+constexpr std::size_t kFewPoints = 1000;
+constexpr double kAlongOfFew = 0.05;
 
 /// On each thinned level: many, as each is cheap and points drawn to points move slowly.
 constexpr int kCoarseIterations = 100;
@@ -62,7 +69,7 @@ public:
       }
     }
     report_.termination = Termination::iteration_limit;
-    LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, kAlong);
+    LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, along());
     align(alignment, run_.max_iterations, finestEpsilon(alignment.spacing()), true);
     return finish();
   }
@@ -82,6 +89,11 @@ public:
 
 private:
   [[nodiscard]] SE3 toFrames(const SE3& pose) const { return target_T_origin_ * pose * source_T_origin_.inverse(); }
+
+  [[nodiscard]] double along() const
+  {
+    return std::min(source_.level(0).tree.size(), target_.level(0).tree.size()) < kFewPoints ? kAlongOfFew : kAlong;
+  }
 
   /// The user's threshold if it is the finer one, as far as single precision goes.
   [[nodiscard]] double finestEpsilon(double spacing) const
@@ -178,7 +190,7 @@ private:
       return report_;
     }
     report_.target_T_source = result;
-    AlignmentAnalysis(sums_, source_.extent()).describe(pose_.rotation * source_.origin(), report_);
+    AlignmentAnalysis(sums_, source_.extent()).describe(pose_.rotation * source_.origin(), kWeak * along(), report_);
     return report_;
   }
 

@@ -68,7 +68,8 @@ LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& targe
 
 void LevelAlignment::searchNearest(const SE3& pose)
 {
-  const auto bound = static_cast<float>(std::min(gate_ * gate_, static_cast<double>(std::numeric_limits<float>::max())));
+  const auto bound =
+      static_cast<float>(std::min(gate_ * gate_, static_cast<double>(std::numeric_limits<float>::max())));
 #pragma omp parallel for num_threads(run_.threads) schedule(dynamic, 1024)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
     const auto i = static_cast<std::size_t>(n);
@@ -100,8 +101,7 @@ void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)
     const Eigen::Vector3d local = pose * source_.tree.points()[i].cast<double>();
     const auto found = position.find(run_.search(source_.number[i], frame_T_origin * local));
     if (found != position.end()) {
-      const Eigen::Vector3d there =
-          target_.tree.points()[static_cast<std::size_t>(found->second)].cast<double>();
+      const Eigen::Vector3d there = target_.tree.points()[static_cast<std::size_t>(found->second)].cast<double>();
       const double squared = (there - local).squaredNorm();
       if (squared <= gate_ * gate_) {
         match_[i] = found->second;
@@ -197,7 +197,13 @@ LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i
   m(1, 2) = m(2, 1) = scale * (c(0, 1) * c(0, 2) - c(0, 0) * c(1, 2));
   m(2, 2) = scale * (c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1));
   const auto f = [](double value) { return static_cast<float>(value); };
-  return {difference.cast<float>(), f(m(0, 0)), f(m(0, 1)), f(m(0, 2)), f(m(1, 1)), f(m(1, 2)), f(m(2, 2)),
+  return {difference.cast<float>(),
+          f(m(0, 0)),
+          f(m(0, 1)),
+          f(m(0, 2)),
+          f(m(1, 1)),
+          f(m(1, 2)),
+          f(m(2, 2)),
           f(std::max(0.0, difference.dot(m * difference)))};
 }
 

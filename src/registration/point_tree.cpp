@@ -41,8 +41,8 @@ struct SomeNearest {
   [[nodiscard]] bool nearer(float squared, int candidate, std::size_t than) const
   {
     return squared < result.squared_distance[than] ||
-           (squared == result.squared_distance[than] &&
-            precedes(points[static_cast<std::size_t>(candidate)], points[static_cast<std::size_t>(result.index[than])]));
+           (squared == result.squared_distance[than] && precedes(points[static_cast<std::size_t>(candidate)],
+                                                                 points[static_cast<std::size_t>(result.index[than])]));
   }
 
   void offer(float squared, int candidate)

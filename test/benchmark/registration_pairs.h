@@ -28,16 +28,16 @@ struct CloudPair {
 /// Pairs of one kind.
 struct PairKind {
   std::string name;
-  std::vector<CloudPair> pairs;      ///< as large as such clouds are: for errors and times
+  std::vector<CloudPair> pairs;       ///< as large as such clouds are: for errors and times
   std::vector<CloudPair> grid_pairs;  ///< smaller where the kind allows: for the grid of initial offsets
 };
 
 /// A scene of shapes, sampled: what is on a table, or a room.
 struct SceneSampling {
-  unsigned scene = 1;       ///< number of the scene
-  unsigned seed = 1;        ///< of the sampling
+  unsigned scene = 1;  ///< number of the scene
+  unsigned seed = 1;   ///< of the sampling
   int points = 20000;
-  double noise = 0.0;       ///< m, standard deviation
+  double noise = 0.0;  ///< m, standard deviation
   double scale = 1.0;
 };
 

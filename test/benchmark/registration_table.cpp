@@ -80,7 +80,6 @@ Score scoreOf(const std::string& method, const PairKind& kind)
       for (const Eigen::Vector3d& axis : kAxes) {
         const MethodResult result = runMethod(method, pair, guessFor(pair, offset, axis));
         score.successes += errorOf(result, pair) <= pair.success ? 1 : 0;
-        if (getenv("DBG")) std::fprintf(stderr, "%s %s %g deg %g axis %g: %.4g (ok %.3g) %.0f ms\n", kind.name.c_str(), method.c_str(), offset.degrees, offset.shift, axis.z(), errorOf(result, pair), pair.success, 1e3*result.seconds);
         ++score.attempts;
       }
     }

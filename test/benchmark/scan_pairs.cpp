@@ -114,8 +114,8 @@ PairKind realScans(const std::string& data)
       compensate(*cloud, Vector6(0.5 * log(poses[n - 1].world_T_sensor.inverse() * poses[n + 1].world_T_sensor)));
       return cloud;
     };
-    kind.pairs.push_back(
-        makeScanPair(scan(number + 1), scan(number), poses[number].world_T_sensor.inverse() * poses[number + 1].world_T_sensor, 0.3));
+    kind.pairs.push_back(makeScanPair(scan(number + 1), scan(number),
+                                      poses[number].world_T_sensor.inverse() * poses[number + 1].world_T_sensor, 0.3));
   }
   return kind;
 }

@@ -91,8 +91,7 @@ TEST(CloudRegistration, ARigidMotionOfBothCloudsChangesNothing)
   const auto target = sampledObject(1, 1.0);
   const Eigen::Matrix4d expected = align(source, target).transform;
   const Eigen::Matrix4d motion_of_both = exp((Vector6() << 1.0, -2.0, 3.0, 0.5, -0.3, 1.2).finished()).matrix();
-  const Eigen::Matrix4d result =
-      align(moved(*source, motion_of_both), moved(*target, motion_of_both)).transform;
+  const Eigen::Matrix4d result = align(moved(*source, motion_of_both), moved(*target, motion_of_both)).transform;
   EXPECT_LT(difference(*source, motion_of_both.inverse() * result * motion_of_both, expected), 0.005 * kSpacing);
 }
 
@@ -176,7 +175,8 @@ TEST(CloudRegistration, WithoutStructureItIsDrawnPointToPoint)
   auto target = pcl::make_shared<Cloud>();
   for (int i = 0; i < 400; ++i) {
     Point point;
-    point.getVector3fMap() = Eigen::Vector3d(uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0)).cast<float>();
+    point.getVector3fMap() =
+        Eigen::Vector3d(uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0)).cast<float>();
     target->push_back(point);
   }
   const Eigen::Matrix4d truth = exp((Vector6() << 0.02, -0.01, 0.03, 0.02, -0.03, 0.01).finished()).matrix();

@@ -153,7 +153,8 @@ TEST(RegistrationBadInput, APlaneIsReachedAndItsSlidesAreWeak)
   pcl::transformPointCloud(*source, *source, Eigen::Matrix4f(motion(0.5).inverse()));
   const RegistrationReport report = align(source, coplanar(1));
   ASSERT_TRUE(report.hasConverged());
-  const Eigen::Vector3d normal = report.target_T_source.rotation * motion(0.5).inverse().topLeftCorner<3, 3>().cast<double>().col(2);
+  const Eigen::Vector3d normal =
+      report.target_T_source.rotation * motion(0.5).inverse().topLeftCorner<3, 3>().cast<double>().col(2);
   EXPECT_GT(std::abs(normal.z()), 1.0 - 1e-6);
   EXPECT_EQ(report.weak_directions.size(), 3U);
 }

@@ -22,15 +22,17 @@ struct SurveyPoint {
   PCL_MAKE_ALIGNED_OPERATOR_NEW
 };
 
-POINT_CLOUD_REGISTER_POINT_STRUCT(SurveyPoint, (float, x, x)(float, y, y)(float, z, z)(float, reflectance, reflectance)(
-                                                   std::uint32_t, station, station))
+POINT_CLOUD_REGISTER_POINT_STRUCT(SurveyPoint,
+                                  (float, x, x)(float, y, y)(float, z, z)(float, reflectance,
+                                                                          reflectance)(std::uint32_t, station, station))
 #endif
 
 namespace pcl_floam::test {
 namespace {
 
 template <typename PointT>
-class RegistrationPointTypes : public testing::Test {};
+class RegistrationPointTypes : public testing::Test {
+};
 
 using Types = testing::Types<pcl::PointXYZ, pcl::PointXYZI, pcl::PointXYZRGB, pcl::PointXYZRGBA, pcl::PointNormal,
                              pcl::PointXYZINormal, pcl::PointXYZRGBNormal

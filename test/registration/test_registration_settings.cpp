@@ -166,14 +166,12 @@ TEST(RegistrationSettings, CriteriaTellWhyItEnded)
 {
   ObjectPair setup;
   setup.align();
-  EXPECT_EQ(setup.registration.getConvergeCriteria()->getConvergenceState(),
-            Criteria::CONVERGENCE_CRITERIA_TRANSFORM);
+  EXPECT_EQ(setup.registration.getConvergeCriteria()->getConvergenceState(), Criteria::CONVERGENCE_CRITERIA_TRANSFORM);
   setup.registration.setMaximumIterations(2);
   setup.align();
   EXPECT_TRUE(setup.registration.hasConverged());
   EXPECT_EQ(setup.registration.report().termination, Termination::iteration_limit);
-  EXPECT_EQ(setup.registration.getConvergeCriteria()->getConvergenceState(),
-            Criteria::CONVERGENCE_CRITERIA_ITERATIONS);
+  EXPECT_EQ(setup.registration.getConvergeCriteria()->getConvergenceState(), Criteria::CONVERGENCE_CRITERIA_ITERATIONS);
   setup.registration.getConvergeCriteria()->setFailureAfterMaximumIterations(true);
   setup.align();
   EXPECT_FALSE(setup.registration.hasConverged());
@@ -312,8 +310,9 @@ TEST(RegistrationSettings, TheLastIncrementIsTheLastStep)
   ObjectPair setup;
   setup.registration.setMaximumIterations(1);
   setup.align();
-  EXPECT_LT((setup.registration.getLastIncrementalTransformation() - setup.registration.getFinalTransformation()).norm(),
-            1e-6F);
+  EXPECT_LT(
+      (setup.registration.getLastIncrementalTransformation() - setup.registration.getFinalTransformation()).norm(),
+      1e-6F);
   setup.registration.setMaximumIterations(30);
   setup.align();
   const Eigen::Matrix4f last = setup.registration.getLastIncrementalTransformation();

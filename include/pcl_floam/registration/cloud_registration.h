@@ -54,8 +54,8 @@ struct PointMatch {
 
 /// What one iteration on the full clouds did.
 struct CloudIteration {
-  SE3 step;             ///< applied on the left of the previous estimate
-  SE3 target_T_source;  ///< the estimate, including the step
+  SE3 step;                                          ///< applied on the left of the previous estimate
+  SE3 target_T_source;                               ///< the estimate, including the step
   const std::vector<PointMatch>* matches = nullptr;  ///< those that were used; only if `wants_matches`
 };
 
@@ -66,7 +66,7 @@ struct CloudRegistrationRun {
   /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
   /// iterations are asked for that it is them that matter (below 4).
   int max_iterations = 30;
-  bool coarse_first = true;  ///< false: the guess is known to be close
+  bool coarse_first = true;                                       ///< false: the guess is known to be close
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
   double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
   int min_correspondences = 3;

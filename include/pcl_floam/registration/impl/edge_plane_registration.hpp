@@ -104,16 +104,17 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     last = target_T_source;
     showIteration(target_T_source, nullptr);
   };
-  const RegistrationReport report =
-      registerFeatures(source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run,
-                       featureRegistrationParameters());
+  const RegistrationReport report = registerFeatures(
+      source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, featureRegistrationParameters());
   this->nr_iterations_ = report.iterations;
   this->transformation_ = (report.target_T_source * last.inverse()).template matrix<Scalar>();
   return report;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess, int max_iterations, bool coarse_first)
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess,
+                                                                                             int max_iterations,
+                                                                                             bool coarse_first)
 {
   const PreparedCloud& target = targetPoints();
   const PreparedCloud source(viewOf(*this->input_), selectableSource(), threads_);
@@ -194,8 +195,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::runBaseLoop(PointC
   report_ = RegistrationReport();
   report_.iterations = this->nr_iterations_;
   report_.target_T_source = SE3(Eigen::Transform<Scalar, 3, Eigen::Affine>(this->final_transformation_));
-  const bool at_limit =
-      this->convergence_criteria_->getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_ITERATIONS;
+  const bool at_limit = this->convergence_criteria_->getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_ITERATIONS;
   report_.termination = !this->converged_ ? Termination::too_few_correspondences
                         : at_limit        ? Termination::iteration_limit
                                           : Termination::converged;
@@ -205,8 +205,8 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformation(PointCloudSource& output,
                                                                                     const Matrix4& guess)
 {
-  const bool replaced = this->transformation_estimation_ != own_estimation_ ||
-                        this->correspondence_estimation_ != own_correspondences_;
+  const bool replaced =
+      this->transformation_estimation_ != own_estimation_ || this->correspondence_estimation_ != own_correspondences_;
   if (!given_indices_ && guess.allFinite() && (replaced || !isRigid(guess))) {
     runBaseLoop(output, guess);
     return;
