@@ -55,7 +55,8 @@ void registerObject()
     p.getVector3fMap() = point.getVector3fMap();
     source->push_back(p);
   }
-  for (const Point& point : *sampledObject(1, 1.0)) {
+  const auto object = sampledObject(1, 1.0);
+  for (const Point& point : *object) {
     PointT p;
     p.getVector3fMap() = point.getVector3fMap();
     target->push_back(p);
