@@ -1,13 +1,11 @@
-// ICP's settings: rejectors, callback, criteria, reciprocal matches, search objects, replaced parts.
-#include "support/registration_clouds.h"
+// ICP's settings: rejectors, callback, criteria, reciprocal matches.
+#include "support/object_pair.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
 
-#include <pcl/common/transforms.h>
 #include <pcl/registration/correspondence_rejection_distance.h>
 #include <pcl/registration/correspondence_rejection_surface_normal.h>
 #include <pcl/registration/correspondence_rejection_trimmed.h>
-#include <pcl/registration/transformation_estimation_svd.h>
 
 #include <gtest/gtest.h>
 
@@ -16,46 +14,6 @@ namespace {
 
 using Registration = EdgePlaneRegistration<Point, Point>;
 using Criteria = pcl::registration::DefaultConvergenceCriteria<float>;
-
-/// A registration of two samplings of the object that are apart by motion(1.0).
-struct ObjectPair {
-  ObjectPair() : source(pcl::make_shared<Cloud>()), target(sampledObject(1, 1.0))
-  {
-    pcl::transformPointCloud(*sampledObject(2, 1.0), *source, Eigen::Matrix4f(motion(1.0).inverse()));
-    registration.setInputSource(source);
-    registration.setInputTarget(target);
-  }
-
-  double align()
-  {
-    registration.align(output);
-    return disagreement(*source, registration.getFinalTransformation(), motion(1.0));
-  }
-
-  Cloud::Ptr source;
-  Cloud::Ptr target;
-  Registration registration;
-  Cloud output;
-};
-
-/// Keeps every second correspondence and remembers what it saw.
-class Halving : public pcl::registration::CorrespondenceRejector {
-public:
-  void getRemainingCorrespondences(const pcl::Correspondences& original, pcl::Correspondences& remaining) override
-  {
-    seen.push_back(original);
-    remaining.clear();
-    for (std::size_t i = 0; i < original.size(); i += 2) {
-      remaining.push_back(original[i]);
-    }
-  }
-  void applyRejection(pcl::Correspondences& correspondences) override
-  {
-    getRemainingCorrespondences(*input_correspondences_, correspondences);
-  }
-
-  std::vector<pcl::Correspondences> seen;
-};
 
 TEST(RegistrationSettings, RejectorsSeeSquaredDistancesOfPointsInEachIteration)
 {
@@ -244,65 +202,6 @@ TEST(RegistrationSettings, TheMaximumDistanceHolds)
       EXPECT_LE(match.distance, 0.02F * 0.02F * 1.0001F);
     }
   }
-}
-
-TEST(RegistrationSettings, ASearchObjectNotToBeRecomputedIsUsedAsItIs)
-{
-  ObjectPair setup;
-  auto tree = pcl::make_shared<pcl::search::KdTree<Point>>();
-  auto few = pcl::make_shared<pcl::Indices>();
-  for (int i = 0; i < 3000; ++i) {
-    few->push_back(2 * i);
-  }
-  tree->setInputCloud(setup.target, few);
-  setup.registration.setSearchMethodTarget(tree, true);
-  const auto counter = pcl::make_shared<Halving>();
-  setup.registration.addCorrespondenceRejector(counter);
-  setup.registration.setMaximumIterations(3);
-  setup.align();
-  ASSERT_FALSE(counter->seen.empty());
-  for (const pcl::Correspondence& match : counter->seen.back()) {
-    EXPECT_EQ(match.index_match % 2, 0);
-  }
-  EXPECT_EQ(tree->getIndices(), pcl::IndicesConstPtr(few));
-}
-
-/// Counts that it is called.
-class CountingEstimation : public pcl::registration::TransformationEstimationSVD<Point, Point, float> {
-public:
-  void estimateRigidTransformation(const Cloud& source, const Cloud& target, const pcl::Correspondences& matches,
-                                   Matrix4& transformation) const override
-  {
-    ++calls;
-    TransformationEstimationSVD::estimateRigidTransformation(source, target, matches, transformation);
-  }
-
-  mutable int calls = 0;
-};
-
-TEST(RegistrationSettings, AReplacedEstimationTakesOver)
-{
-  ObjectPair setup;
-  const auto estimation = pcl::make_shared<CountingEstimation>();
-  setup.registration.setTransformationEstimation(estimation);
-  setup.registration.setTransformationEpsilon(1e-10);
-  (*setup.source)[3].x = std::numeric_limits<float>::quiet_NaN();  // which ends the process in ICP itself
-  setup.source->is_dense = false;
-  setup.registration.align(setup.output);
-  EXPECT_LT(disagreement(*sampledObject(2, 1.0), setup.registration.getFinalTransformation(), motion(1.0)), 0.05);
-  EXPECT_GT(estimation->calls, 1);
-  EXPECT_EQ(setup.registration.report().iterations, estimation->calls);
-}
-
-TEST(RegistrationSettings, AGuessThatScalesIsCarriedAlong)
-{
-  ObjectPair setup;
-  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
-  guess.topLeftCorner<3, 3>() *= 1.1F;
-  setup.registration.align(setup.output, guess);
-  EXPECT_TRUE(setup.registration.hasConverged());
-  const Eigen::Matrix3f linear = setup.registration.getFinalTransformation().topLeftCorner<3, 3>();
-  EXPECT_NEAR(linear.determinant(), 1.331F, 1e-3F);
 }
 
 TEST(RegistrationSettings, TheLastIncrementIsTheLastStep)
