@@ -42,15 +42,17 @@ void VoxelLayer::searchAround(const BlockQuery& query, NearestSoFar& nearest) co
   const auto step_x = nearestFirst(query.offset.x(), size);
   const auto step_y = nearestFirst(query.offset.y(), size);
   const auto step_z = nearestFirst(query.offset.z(), size);
+  const auto along = [](const std::array<float, 3>& gaps, int step) {
+    return gaps[static_cast<std::size_t>(1L + step)];
+  };
   for (const int dz : step_z) {
     for (const int dy : step_y) {
       for (const int dx : step_x) {
-        const float gap = gap_x[static_cast<std::size_t>(dx + 1)] + gap_y[static_cast<std::size_t>(dy + 1)] +
-                          gap_z[static_cast<std::size_t>(dz + 1)];
+        const float gap = along(gap_x, dx) + along(gap_y, dy) + along(gap_z, dz);
         if (gap > nearest.limit) {
           continue;
         }
-        const auto place = static_cast<std::size_t>((dz + 1) * 9 + (dy + 1) * 3 + dx + 1);
+        const auto place = static_cast<std::size_t>(13L + 9L * dz + 3L * dy + dx);
         const std::int32_t block = home != VoxelBlock::kNone
                                        ? blocks_[static_cast<std::size_t>(home)].around[place]
                                        : findBlock({query.key.x + dx, query.key.y + dy, query.key.z + dz});

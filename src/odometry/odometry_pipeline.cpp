@@ -226,7 +226,7 @@ struct OdometryPipeline::Impl {
     if (!velocity.isKnown()) {  // in a map made before: what was estimated is how far off the first guess was
       return Vector6::Zero();
     }
-    const Vector6 between = twistTo(report.registration.target_T_source);
+    Vector6 between = twistTo(report.registration.target_T_source);
     if (parameters.compensation == CompensationMode::continuous && compensatedFraction() > 0.0) {
       return 0.5 * between + 0.5 / sweep_fraction * report.registration.sweep_twist;
     }

@@ -82,7 +82,7 @@ public:
         const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
             share_[block] * factor_.derivative() * motionDerivative(rotated, phi);
         for (int row = 0; row < Factor::kResiduals; ++row) {
-          Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[block] + row * 6) = jacobian.row(row);
+          Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[block] + 6L * row) = jacobian.row(row);
         }
       }
     }
@@ -108,7 +108,7 @@ public:
     for (int block = 0; jacobians != nullptr && block < 2; ++block) {
       if (jacobians[block] != nullptr) {
         Eigen::Map<Eigen::Matrix<double, 12, 6, Eigen::RowMajor>>(jacobians[block], 12, 6) =
-            root_.middleCols<6>(6 * block);
+            root_.middleCols<6>(6L * block);
       }
     }
     return true;

@@ -38,6 +38,7 @@ public:
   PoseEstimation(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
                  const RegistrationParameters& parameters)
       : source_(source),
+        on_iteration_(run.on_iteration),
         model_(localModel(run)),
         problem_{target, parameters, run.guess.translation, run.threads},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
@@ -89,6 +90,9 @@ private:
   /// One iteration of the pose estimation: fresh correspondences, one step. \return true when it is over
   bool iterate()
   {
+    if (on_iteration_) {
+      on_iteration_(pose());
+    }
     findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_, stride_,
                         correspondences_);
     const KernelScales scales = adaptKernelScales(problem_, correspondences_);
@@ -178,6 +182,7 @@ private:
   }
 
   const FeatureSet& source_;
+  const std::function<void(const SE3&)>& on_iteration_;
   SweepModel model_;
   RegistrationProblem problem_;
   SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin

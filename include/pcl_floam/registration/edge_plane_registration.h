@@ -5,12 +5,17 @@
 #include <pcl_floam/filters/feature_extractor.h>
 #include <pcl_floam/filters/sensor_model.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/registration/cloud_registration.h>
 #include <pcl_floam/registration/feature_registration.h>
 
+#include <pcl/PCLPointCloud2.h>
 #include <pcl/registration/icp.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -25,22 +30,52 @@ namespace pcl_floam {
 /// if (registration.hasConverged()) { ... registration.getFinalTransformation() ... registration.report() ... }
 /// \endcode
 ///
-/// The source is one of: features set by setSourceFeatures(); the features of the source cloud, if both clouds are
-/// lidar scans with scan lines; else all finite points of the source, each against the plane of its neighbours in the
-/// target, with all lengths relative to the target's point spacing. The target is the map set by setInputTargetMap(),
-/// or the target cloud.
+/// What is registered:
+/// - Features set by setSourceFeatures(), or those of the source if both clouds are lidar scans with scan lines,
+///   against the map set by setInputTargetMap() or the target's features: the paper's way (\ref registerFeatures).
+/// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
+///   with no length that is not relative to the clouds' spacing.
 ///
-/// Of ICP's settings, `setMaximumIterations` (default here 30), `setMaxCorrespondenceDistance` (bounds the neighbours'
-/// distance), `setTransformationEpsilon` (a squared translation) and `setTransformationRotationEpsilon` (a cosine)
-/// are honoured when set; they take precedence over the parameters.
+/// Should scans have too few features in common, all their points are tried, too.
+///
+/// Either starts with thinned clouds if the guess is not close, unless fewer than 4 iterations are asked for.
+///
+/// ICP's settings, read when align() runs, also through a base pointer:
+/// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
+/// - `setMaxCorrespondenceDistance`: matches are never farther apart. By default they may be at first, and then follow
+///   the typical distance.
+/// - `setTransformationEpsilon` (a *squared* translation), `setTransformationRotationEpsilon` (a *cosine*),
+///   `setEuclideanFitnessEpsilon` (relative change of the mean squared distance) and those of getConvergeCriteria() end
+///   it as they end ICP. Unset, it ends when no point moves by more than a small fraction of the spacing.
+/// - Rejectors run in each iteration, reciprocal matches are honoured, and the visualisation callback is called once an
+///   iteration on the full clouds. Rejectors see the thinned clouds' matches, too: these name the points nearest to the
+///   voxels' means.
+/// - A search object set by `setSearchMethodTarget` is used as it is if it is told not to be recomputed, is of a class
+///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
+///   source's search object, reciprocal matches make no use: they come from a tree of the library's own.
+/// - A transformation estimation or correspondence estimation set by the user takes over: ICP's own loop then runs
+///   with it, and so it does for a guess that is no rigid motion.
+/// - `setRANSACIterations`, `setRANSACOutlierRejectionThreshold`: without effect, as in ICP itself.
+///
+/// Rejectors, reciprocal matches, the Euclidean fitness epsilon and a search object of the user's speak of points: with
+/// them scans are registered by all points, too.
+///
+/// Input that constrains no pose is reported, not refused: hasConverged() is false and report() tells why, or the best
+/// partial answer comes with its weak directions. Indices that are out of the source's range count as such input.
+///
+/// Header-only like all classes that derive from PCL's, whose layout depends on the compiler's flags; what is compiled
+/// in advance is the core, for all point types alike. Types of one's own need nothing but their registration with PCL
+/// (and `PCL_NO_PRECOMPILE` where PCL's own classes do).
 template <typename PointSource, typename PointTarget, typename Scalar = float>
 class EdgePlaneRegistration : public pcl::IterativeClosestPoint<PointSource, PointTarget, Scalar> {
   using Base = pcl::IterativeClosestPoint<PointSource, PointTarget, Scalar>;
+  using Criteria = pcl::registration::DefaultConvergenceCriteria<Scalar>;
 
 public:
   using Ptr = pcl::shared_ptr<EdgePlaneRegistration<PointSource, PointTarget, Scalar>>;
   using ConstPtr = pcl::shared_ptr<const EdgePlaneRegistration<PointSource, PointTarget, Scalar>>;
   using PointCloudSource = typename Base::PointCloudSource;
+  using PointCloudSourceConstPtr = typename Base::PointCloudSourceConstPtr;
   using PointCloudTarget = typename Base::PointCloudTarget;
   using PointCloudTargetConstPtr = typename Base::PointCloudTargetConstPtr;
   using Matrix4 = typename Base::Matrix4;
@@ -69,7 +104,15 @@ public:
   void setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map);
   [[nodiscard]] KeyframeVoxelMap::ConstPtr getInputTargetMap() const { return target_map_; }
 
+  /// Unlike ICP's, takes an empty cloud, too, and does not keep the one before: align() then fails.
+  void setInputSource(const PointCloudSourceConstPtr& cloud) override;
+  /// See setInputSource(). The cloud is new each time, also under the same pointer.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
+
+  void setIndices(const pcl::IndicesPtr& indices) override;
+  void setIndices(const pcl::IndicesConstPtr& indices) override;
+  void setIndices(const pcl::PointIndices::ConstPtr& indices) override;
+  void setIndices(std::size_t row_start, std::size_t column_start, std::size_t rows, std::size_t columns) override;
 
   /// Threads for the search of correspondences, 1 or more; the result does not depend on it. 0 uses all processors.
   void setNumberOfThreads(unsigned int threads = 0);
@@ -85,14 +128,34 @@ private:
   /// What the target cloud was turned into; kept until the target changes.
   struct Target {
     std::unique_ptr<KeyframeVoxelMap> features;  ///< of a cloud with scan lines
-    std::unique_ptr<NeighborSearch> points;      ///< of any cloud
-    double spacing = 0.0;                        ///< typical distance of neighbouring points, m
+    std::unique_ptr<PreparedCloud> points;       ///< of any cloud, made when it is first needed
+    std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
   };
 
-  [[nodiscard]] FeatureSet sourceFeatures(bool from_scan_lines) const;
-  void prepareTarget();
-  [[nodiscard]] RegistrationParameters effectiveParameters(bool from_scan_lines) const;
+  void checkIndices();
+  [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
+  [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
+  [[nodiscard]] const PreparedCloud& targetPoints();
+  [[nodiscard]] bool wantsPoints() const;
+  [[nodiscard]] bool hasSearchOfItsOwn() const;
+  [[nodiscard]] bool hasCriteriaOfItsOwn() const;
+  [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
+  [[nodiscard]] int iterationLimit() const { return std::max(1, this->max_iterations_); }
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
+  [[nodiscard]] SE3 roughPose(const SE3& guess);
+  [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
+  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess, int max_iterations, bool coarse_first);
+  [[nodiscard]] RegistrationReport finishByPoints(const RegistrationReport& by_features);
+  void runBaseLoop(PointCloudSource& output, const Matrix4& guess);
+  void setUpCriteria();
+  void concludeCriteria();
+
+  // What ICP's settings ask for in each iteration.
+  void reject(const SE3& target_T_source, std::vector<PointMatch>& matches);
+  bool iterated(const CloudIteration& iteration);
+  [[nodiscard]] int searchTarget(int source, const Eigen::Vector3d& position) const;
+  void showIteration(const SE3& target_T_source, const std::vector<PointMatch>* matches);
+  [[nodiscard]] PointCloudSource movedSource(const SE3& target_T_source);
 
   RegistrationParameters parameters_;
   FeatureParameters feature_parameters_;
@@ -102,8 +165,14 @@ private:
   std::shared_ptr<Target> prepared_target_;
   RegistrationReport report_;
   int threads_ = 1;
+  pcl::IndicesPtr given_indices_;  ///< by the user, if some of them are out of range
+  typename Base::TransformationEstimationPtr own_estimation_;
+  typename Base::CorrespondenceEstimationPtr own_correspondences_;
+  pcl::PCLPointCloud2::Ptr target_blob_;  ///< for rejectors that ask for it, while align() runs
 };
 
 }  // namespace pcl_floam
 
 #include <pcl_floam/registration/impl/edge_plane_registration.hpp>
+#include <pcl_floam/registration/impl/edge_plane_registration_input.hpp>
+#include <pcl_floam/registration/impl/edge_plane_registration_iteration.hpp>

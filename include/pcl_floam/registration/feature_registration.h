@@ -10,6 +10,8 @@
 #include <pcl_floam/registration/registration_report.h>
 #include <pcl_floam/registration/sweep_model.h>
 
+#include <functional>
+
 namespace pcl_floam {
 
 /// What is registered against: the searches of an edge layer and of a plane layer. Neither may be null.
@@ -26,6 +28,8 @@ struct RegistrationRun {
   double guess_uncertainty = 0.0;
   int threads = 1;
   SweepModel sweep;  ///< default: the source is not distorted
+  /// Called before each iteration with the present pose, if set.
+  std::function<void(const SE3& target_T_source)> on_iteration;
 };
 
 /// Estimates the pose of a scan's features in a map by minimising the weighted point-to-line and point-to-plane

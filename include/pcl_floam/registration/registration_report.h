@@ -38,6 +38,7 @@ struct RegistrationReport {
   int iterations = 0;
   int edge_correspondences = 0;   ///< of the last iteration
   int plane_correspondences = 0;  ///< of the last iteration
+  int point_correspondences = 0;  ///< of the last iteration: neither line nor plane; only of clouds without scan lines
   int edge_inliers = 0;           ///< those with a robust weight of at least one half
   int plane_inliers = 0;
   double cost = 0.0;          ///< half the sum of weighted squared residuals, m^2

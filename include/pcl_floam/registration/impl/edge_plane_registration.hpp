@@ -1,124 +1,66 @@
+// EdgePlaneRegistration: one registration from input to result.
 #pragma once
 
 #include <pcl_floam/registration/cloud_features.h>
-#include <pcl_floam/registration/finite_search.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 namespace pcl_floam {
 
-template <typename PointSource, typename PointTarget, typename Scalar>
-EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
+/// Whether a matrix is a rigid motion up to rounding.
+template <typename Matrix>
+[[nodiscard]] bool isRigid(const Matrix& matrix)
 {
-  this->reg_name_ = "EdgePlaneRegistration";
-  this->max_iterations_ = parameters_.max_iterations;
-  this->setSearchMethodTarget(pcl::make_shared<FiniteSearch<PointTarget>>());
+  const Eigen::Matrix3d linear = matrix.template topLeftCorner<3, 3>().template cast<double>();
+  return (linear.transpose() * linear - Eigen::Matrix3d::Identity()).norm() < 1e-3 && linear.determinant() > 0.0;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setParameters(const RegistrationParameters& parameters)
+std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar>::selectableSource() const
 {
-  validate(parameters);
-  parameters_ = parameters;
-  this->max_iterations_ = parameters.max_iterations;
+  if (this->fake_indices_ || !this->indices_) {
+    return {};
+  }
+  return maskOf(*this->indices_, this->input_->size());
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setFeatureParameters(const FeatureParameters& parameters)
+const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
 {
-  validate(parameters);
-  feature_parameters_ = parameters;
-  prepared_target_.reset();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const SensorModel& sensor)
-{
-  sensor_ = sensor;
-  prepared_target_.reset();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTarget(const PointCloudTargetConstPtr& cloud)
-{
-  Base::setInputTarget(cloud);
-  prepared_target_.reset();  // also under the same pointer the cloud may have changed
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map)
-{
-  target_map_ = map;
-  if (map && !this->target_) {
-    auto cloud = pcl::make_shared<PointCloudTarget>();
-    for (const Eigen::Vector3d& position : map->points(FeatureKind::plane)) {
-      PointTarget point;
-      point.getVector3fMap() = position.template cast<float>();
-      cloud->push_back(point);
+  if (target_map_) {
+    return target_map_.get();
+  }
+  if (!prepared_target_) {
+    prepared_target_ = std::make_shared<Target>();
+    const FeatureSet features = scanLineFeatures(viewOf(*this->target_), sensor_, feature_parameters_);
+    if (static_cast<int>(features.planes.size() + features.edges.size()) >= parameters_.min_correspondences) {
+      prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
+      prepared_target_->features->insert(features, SE3());
     }
-    setInputTarget(cloud);
   }
+  return prepared_target_->features.get();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(unsigned int threads)
+const PreparedCloud& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetPoints()
 {
-  threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
+  if (!prepared_target_) {
+    prepared_target_ = std::make_shared<Target>();
+  }
+  if (!prepared_target_->points) {
+    prepared_target_->points =
+        std::make_unique<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
+  }
+  return *prepared_target_->points;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::sourceFeatures(bool from_scan_lines) const
-{
-  if (source_features_) {
-    return *source_features_;
-  }
-  const CloudView cloud = viewOf(*this->input_);
-  std::vector<std::uint8_t> selectable;
-  if (!this->fake_indices_ && this->indices_) {
-    selectable = maskOf(*this->indices_, cloud.size);
-  }
-  return from_scan_lines ? scanLineFeatures(cloud, sensor_, feature_parameters_, selectable)
-                         : pointFeatures(cloud, selectable);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::prepareTarget()
-{
-  if (prepared_target_ || target_map_) {
-    return;
-  }
-  prepared_target_ = std::make_shared<Target>();
-  const CloudView cloud = viewOf(*this->target_);
-  const FeatureSet features = scanLineFeatures(cloud, sensor_, feature_parameters_);
-  if (static_cast<int>(features.planes.size() + features.edges.size()) >= parameters_.min_correspondences) {
-    prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
-    prepared_target_->features->insert(features, SE3());
-    return;
-  }
-  const std::vector<Eigen::Vector3d> points = measurablePoints(cloud);
-  prepared_target_->points = makeKdTreeSearch(points);
-  prepared_target_->spacing = pointSpacing(points, *prepared_target_->points);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::effectiveParameters(
-    bool from_scan_lines) const
+RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featureRegistrationParameters() const
 {
   RegistrationParameters parameters = parameters_;
-  if (!from_scan_lines) {
-    // No absolute metres where nothing is known of the scene: lengths follow the target's point spacing.
-    const double spacing = std::max(prepared_target_->spacing, std::numeric_limits<double>::min());
-    parameters.kernel_scale = 0.1 * spacing;
-    parameters.translation_epsilon = 1e-3 * spacing;
-    parameters.rotation_epsilon = 1e-5;
-    parameters.plane_neighbors = std::max(10, parameters.plane_neighbors);
-    parameters.max_neighbor_distance = std::sqrt(std::numeric_limits<float>::max()) / 2.0;
-    parameters.min_correspondences = 6;
-  }
-  parameters.max_iterations = std::max(1, this->max_iterations_);
+  parameters.max_iterations = iterationLimit();
   parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
   if (this->transformation_epsilon_ > 0.0) {
     parameters.translation_epsilon = std::sqrt(this->transformation_epsilon_);
@@ -129,42 +71,165 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   return parameters;
 }
 
+/// Where to start on the features, which must be near theirs already.
+template <typename PointSource, typename PointTarget, typename Scalar>
+SE3 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::roughPose(const SE3& guess)
+{
+  constexpr int kFewIterations = 4;
+  if (target_map_ || source_features_ || this->max_iterations_ < kFewIterations) {
+    return guess;
+  }
+  if (!prepared_target_->thinned) {
+    prepared_target_->thinned = std::make_unique<PreparedCloud>(
+        PreparedCloud::thinned(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_));
+  }
+  CloudRegistrationRun run;
+  run.guess = guess;
+  run.threads = threads_;
+  run.max_distance = this->corr_dist_threshold_;
+  return alignRoughly(PreparedCloud::thinned(viewOf(*this->input_), selectableSource(), threads_),
+                      *prepared_target_->thinned, run);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess,
+                                                                                               FeatureSet& source)
+{
+  const KeyframeVoxelMap& map = *targetFeatures();
+  RegistrationRun run;
+  run.guess = roughPose(guess);
+  run.threads = threads_;
+  SE3 last = run.guess;
+  run.on_iteration = [this, &last](const SE3& target_T_source) {
+    last = target_T_source;
+    showIteration(target_T_source, nullptr);
+  };
+  const RegistrationReport report = registerFeatures(
+      source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, featureRegistrationParameters());
+  this->nr_iterations_ = report.iterations;
+  this->transformation_ = (report.target_T_source * last.inverse()).template matrix<Scalar>();
+  return report;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess,
+                                                                                             int max_iterations,
+                                                                                             bool coarse_first)
+{
+  const PreparedCloud& target = targetPoints();
+  const PreparedCloud source(viewOf(*this->input_), selectableSource(), threads_);
+  CloudRegistrationRun run;
+  run.guess = guess;
+  run.threads = threads_;
+  run.max_iterations = max_iterations;
+  run.coarse_first = coarse_first;
+  run.max_distance = this->corr_dist_threshold_;
+  run.epsilon = std::sqrt(std::max(0.0, this->transformation_epsilon_));
+  run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
+  run.reciprocal = this->use_reciprocal_correspondence_;
+  run.kernel = parameters_.kernel;
+  run.wants_matches = this->update_visualizer_ != nullptr || hasCriteriaOfItsOwn();
+  if (!this->correspondence_rejectors_.empty()) {
+    run.reject = [this](const SE3& pose, std::vector<PointMatch>& matches) { reject(pose, matches); };
+  }
+  if (hasSearchOfItsOwn()) {
+    run.search = [this](int point, const Eigen::Vector3d& position) { return searchTarget(point, position); };
+  }
+  run.iterated = [this](const CloudIteration& iteration) { return iterated(iteration); };
+  return registerClouds(source, target, run);
+}
+
+/// A few iterations with all points of two scans, after those with their features: thousands of features find the pose,
+/// all points tell it more exactly.
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::finishByPoints(
+    const RegistrationReport& by_features)
+{
+  constexpr int kAFew = 6;
+  const int left = std::min(kAFew, iterationLimit() - by_features.iterations);
+  if (left < 1) {
+    return by_features;
+  }
+  RegistrationReport report = registerByPoints(by_features.target_T_source, left, false);
+  if (!report.hasConverged()) {
+    return by_features;
+  }
+  report.iterations += by_features.iterations;
+  report.termination = by_features.termination;
+  return report;
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerSource(const SE3& guess)
 {
-  prepareTarget();
-  const KeyframeVoxelMap* features = target_map_ ? target_map_.get() : prepared_target_->features.get();
-  bool from_scan_lines = features != nullptr;
-  FeatureSet source = sourceFeatures(from_scan_lines);
-  if (from_scan_lines && !target_map_ && !source_features_ && source.planes.empty() && source.edges.empty()) {
-    // A scan was set as target, but the source is none: both are taken as mere points.
-    const std::vector<Eigen::Vector3d> points = measurablePoints(viewOf(*this->target_));
-    prepared_target_->points = makeKdTreeSearch(points);
-    prepared_target_->spacing = pointSpacing(points, *prepared_target_->points);
-    from_scan_lines = false;
-    source = sourceFeatures(false);
+  if (given_indices_ || !guess.isFinite()) {
+    RegistrationReport report;
+    report.termination = Termination::invalid_input;
+    return report;
   }
-  FeatureTarget target{prepared_target_ ? prepared_target_->points.get() : nullptr,
-                       prepared_target_ ? prepared_target_->points.get() : nullptr};
-  if (from_scan_lines) {
-    target = {&features->search(FeatureKind::edge), &features->search(FeatureKind::plane)};
+  if (target_map_ || (!wantsPoints() && targetFeatures() != nullptr)) {
+    FeatureSet source = source_features_
+                            ? *source_features_
+                            : scanLineFeatures(viewOf(*this->input_), sensor_, feature_parameters_, selectableSource());
+    if (target_map_ && source.planes.empty() && source.edges.empty()) {
+      source = pointFeatures(viewOf(*this->input_), selectableSource());
+    }
+    if (!source.planes.empty() || !source.edges.empty()) {
+      const RegistrationReport report = registerByFeatures(guess, source);
+      if (target_map_ || source_features_) {
+        return report;
+      }
+      if (report.hasConverged()) {
+        return finishByPoints(report);
+      }
+    }
   }
-  RegistrationRun run;
-  run.guess = guess;
-  run.threads = threads_;
-  return registerFeatures(source, target, run, effectiveParameters(from_scan_lines));
+  return registerByPoints(guess, iterationLimit(), true);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::runBaseLoop(PointCloudSource& output,
+                                                                          const Matrix4& guess)
+{
+  Base::computeTransformation(output, guess);
+  report_ = RegistrationReport();
+  report_.iterations = this->nr_iterations_;
+  report_.target_T_source = SE3(Eigen::Transform<Scalar, 3, Eigen::Affine>(this->final_transformation_));
+  const bool at_limit = this->convergence_criteria_->getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_ITERATIONS;
+  report_.termination = !this->converged_ ? Termination::too_few_correspondences
+                        : at_limit        ? Termination::iteration_limit
+                                          : Termination::converged;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformation(PointCloudSource& output,
                                                                                     const Matrix4& guess)
 {
-  report_ = registerSource(SE3(Eigen::Transform<Scalar, 3, Eigen::Affine>(guess)));
-  this->converged_ = report_.hasConverged();
-  this->nr_iterations_ = report_.iterations;
-  this->previous_transformation_ = guess;
-  this->final_transformation_ = this->converged_ ? Matrix4(report_.target_T_source.template matrix<Scalar>()) : guess;
-  this->transformation_ = this->final_transformation_ * guess.inverse();
+  const bool replaced =
+      this->transformation_estimation_ != own_estimation_ || this->correspondence_estimation_ != own_correspondences_;
+  if (!given_indices_ && guess.allFinite() && (replaced || !isRigid(guess))) {
+    runBaseLoop(output, guess);
+    return;
+  }
+  this->nr_iterations_ = 0;
+  this->transformation_ = this->previous_transformation_ = Matrix4::Identity();
+  setUpCriteria();
+  SE3 start{Eigen::Transform<Scalar, 3, Eigen::Affine>(guess)};
+  if (start.isFinite()) {
+    start.rotation = nearestRotation(start.rotation);
+  }
+  report_ = registerSource(start);
+  if (!report_.hasConverged()) {
+    report_.target_T_source = start.isFinite() ? start : SE3();
+  }
+  concludeCriteria();
+  this->final_transformation_ = Matrix4::Identity();
+  if (this->converged_) {
+    this->final_transformation_ = report_.target_T_source.template matrix<Scalar>();
+  } else if (guess.allFinite()) {
+    this->final_transformation_ = guess;
+  }
+  target_blob_.reset();
   output = *this->input_;  // with indices set, the base has made it smaller
   this->transformCloud(*this->input_, output, this->final_transformation_);
 }

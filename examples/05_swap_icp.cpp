@@ -1,0 +1,62 @@
+// PCL's "How to use iterative closest point" with one typedef changed.
+//
+//   ./05_swap_icp            a made-up cloud, moved
+//   ./05_swap_icp a.pcd b.pcd
+#include <pcl_floam/registration/edge_plane_registration.h>
+
+#include <pcl/common/transforms.h>
+#include <pcl/io/pcd_io.h>
+
+#include <cmath>
+#include <iostream>
+
+using Point = pcl::PointXYZ;
+using Cloud = pcl::PointCloud<Point>;
+
+// using Icp = pcl::IterativeClosestPoint<Point, Point>;
+using Icp = pcl_floam::EdgePlaneRegistration<Point, Point>;
+
+namespace {
+
+/// A wavy sheet with a step in it.
+Cloud::Ptr makeCloud()
+{
+  auto cloud = pcl::make_shared<Cloud>();
+  for (int i = 0; i < 100; ++i) {
+    for (int j = 0; j < 100; ++j) {
+      const float x = 0.01F * static_cast<float>(i);
+      const float y = 0.01F * static_cast<float>(j);
+      cloud->push_back(Point(x, y, 0.05F * std::sin(8.0F * x) * std::cos(5.0F * y) + (x > 0.6F ? 0.1F : 0.0F)));
+    }
+  }
+  return cloud;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  auto source = makeCloud();
+  auto target = pcl::make_shared<Cloud>();
+  if (argc == 3) {
+    if (pcl::io::loadPCDFile(argv[1], *source) < 0 || pcl::io::loadPCDFile(argv[2], *target) < 0) {
+      return 2;
+    }
+  } else {
+    Eigen::Affine3f motion(Eigen::AngleAxisf(0.2F, Eigen::Vector3f::UnitZ()));
+    motion.translation() << 0.1F, -0.05F, 0.02F;
+    pcl::transformPointCloud(*source, *target, motion);
+  }
+
+  Icp icp;
+  icp.setInputSource(source);
+  icp.setInputTarget(target);
+  icp.setMaximumIterations(50);
+  icp.setTransformationEpsilon(1e-8);
+
+  Cloud aligned;
+  icp.align(aligned);
+  std::cout << "has converged: " << icp.hasConverged() << ", score: " << icp.getFitnessScore() << '\n'
+            << icp.getFinalTransformation() << '\n';
+  return icp.hasConverged() ? 0 : 1;
+}

@@ -1,0 +1,98 @@
+/// \file cloud_registration.h
+/// Registration of clouds of any origin, for every point type: the core of \ref EdgePlaneRegistration for clouds
+/// without scan lines.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/registration_report.h>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace pcl_floam {
+
+class CloudPyramid;
+
+/// A cloud made ready for registration: points about their centroid, a search tree, the shape around each point, and
+/// thinned versions of all that, made when they are first needed.
+class PreparedCloud {
+public:
+  /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
+  ///                   exactly (0, 0, 0) if there are several: they stand for "no return".
+  PreparedCloud(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
+  /// Only what \ref alignRoughly needs: a few thousand points.
+  [[nodiscard]] static PreparedCloud thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                             int threads);
+  ~PreparedCloud();
+  PreparedCloud(PreparedCloud&& other) noexcept;
+  PreparedCloud& operator=(PreparedCloud&& other) noexcept;
+
+  [[nodiscard]] bool empty() const;
+
+  /// Typical distance of neighbouring points, m; 0 if all points are equal.
+  [[nodiscard]] double spacing() const;
+
+  [[nodiscard]] CloudPyramid& pyramid() const { return *pyramid_; }
+
+private:
+  explicit PreparedCloud(std::unique_ptr<CloudPyramid> pyramid);
+
+  std::unique_ptr<CloudPyramid> pyramid_;
+};
+
+/// Two points taken for the same place, by their numbers in the clouds.
+struct PointMatch {
+  int source = 0;
+  int target = 0;
+  float squared_distance = 0.0F;  ///< m^2
+};
+
+/// What one iteration on the full clouds did.
+struct CloudIteration {
+  SE3 step;                                          ///< applied on the left of the previous estimate
+  SE3 target_T_source;                               ///< the estimate, including the step
+  const std::vector<PointMatch>* matches = nullptr;  ///< those that were used; only if `wants_matches`
+};
+
+/// Settings of one registration.
+struct CloudRegistrationRun {
+  SE3 guess;  ///< target_T_source
+  int threads = 1;
+  /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
+  /// iterations are asked for that it is them that matter (below 4).
+  int max_iterations = 30;
+  bool coarse_first = true;                                       ///< false: the guess is known to be close
+  double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
+  double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
+  int min_correspondences = 3;
+  bool reciprocal = false;  ///< only matches that are each other's nearest
+  RobustKernel kernel = RobustKernel::cauchy;
+  bool wants_matches = false;
+  /// Takes away from the matches of each iteration what it does not want; source points are at \p target_T_source.
+  std::function<void(const SE3& target_T_source, std::vector<PointMatch>& matches)> reject;
+  /// Called after each iteration; true ends the registration, which has then converged.
+  std::function<bool(const CloudIteration&)> iterated;
+  /// A search to use in place of the target's own on the full cloud: the number of the target's point that belongs to
+  /// a source point (by number, and where it is now), or -1.
+  std::function<int(int source, const Eigen::Vector3d& position)> search;
+};
+
+/// Registers two clouds: nearest points, each pair weighed by the shapes around both (line, plane or point), with a
+/// robust kernel and a search distance that adapt, first between thinned clouds.
+///
+/// All lengths are relative to the clouds' spacing. Never throws for data; the report tells what came of it.
+/// Bit-identical for every number of threads.
+[[nodiscard]] RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,
+                                                const CloudRegistrationRun& run);
+
+/// Where a registration by other means should start: the guess if it is close, else what registering thinned clouds
+/// comes to, if that is nearer the target than the guess. Takes a few milliseconds.
+[[nodiscard]] SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target,
+                               const CloudRegistrationRun& run);
+
+}  // namespace pcl_floam

@@ -1,0 +1,150 @@
+// EdgePlaneRegistration: settings and input.
+#pragma once
+
+#include <pcl_floam/registration/finite_search.h>
+
+#include <algorithm>
+#include <thread>
+
+namespace pcl_floam {
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
+{
+  this->reg_name_ = "EdgePlaneRegistration";
+  this->max_iterations_ = parameters_.max_iterations;
+  this->setSearchMethodTarget(pcl::make_shared<FiniteSearch<PointTarget>>());
+  own_estimation_ = this->transformation_estimation_;
+  own_correspondences_ = this->correspondence_estimation_;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setParameters(const RegistrationParameters& parameters)
+{
+  validate(parameters);
+  parameters_ = parameters;
+  this->max_iterations_ = parameters.max_iterations;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setFeatureParameters(const FeatureParameters& parameters)
+{
+  validate(parameters);
+  feature_parameters_ = parameters;
+  prepared_target_.reset();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const SensorModel& sensor)
+{
+  sensor_ = sensor;
+  prepared_target_.reset();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputSource(const PointCloudSourceConstPtr& cloud)
+{
+  this->converged_ = false;
+  if (cloud && !cloud->empty()) {
+    Base::setInputSource(cloud);
+  } else {
+    this->input_ = cloud;
+    this->source_cloud_updated_ = true;
+  }
+  checkIndices();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTarget(const PointCloudTargetConstPtr& cloud)
+{
+  this->converged_ = false;
+  if (cloud && !cloud->empty()) {
+    Base::setInputTarget(cloud);
+  } else {
+    this->target_ = cloud;
+    this->target_cloud_updated_ = true;
+  }
+  prepared_target_.reset();  // also under the same pointer the cloud may have changed
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map)
+{
+  target_map_ = map;
+  if (map && !this->target_) {
+    auto cloud = pcl::make_shared<PointCloudTarget>();
+    for (const Eigen::Vector3d& position : map->points(FeatureKind::plane)) {
+      PointTarget point;
+      point.getVector3fMap() = position.template cast<float>();
+      cloud->push_back(point);
+    }
+    setInputTarget(cloud);
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::IndicesPtr& indices)
+{
+  given_indices_.reset();
+  Base::setIndices(indices);
+  checkIndices();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::IndicesConstPtr& indices)
+{
+  given_indices_.reset();
+  Base::setIndices(indices);
+  checkIndices();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::PointIndices::ConstPtr& indices)
+{
+  given_indices_.reset();
+  Base::setIndices(indices);
+  checkIndices();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(std::size_t row_start,
+                                                                         std::size_t column_start, std::size_t rows,
+                                                                         std::size_t columns)
+{
+  if (this->input_) {
+    given_indices_.reset();
+    Base::setIndices(row_start, column_start, rows, columns);
+    checkIndices();
+  }
+}
+
+/// The base copies the points that the indices name before anything of ours runs: what does not exist is taken out
+/// here, and align() then fails.
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::checkIndices()
+{
+  if (given_indices_) {
+    this->indices_ = given_indices_;
+    given_indices_.reset();
+  }
+  if (!this->input_ || !this->indices_ || this->fake_indices_) {
+    return;
+  }
+  const auto size = static_cast<std::ptrdiff_t>(this->input_->size());
+  const auto outside = [size](auto index) {
+    return static_cast<std::ptrdiff_t>(index) < 0 || static_cast<std::ptrdiff_t>(index) >= size;
+  };
+  if (std::any_of(this->indices_->begin(), this->indices_->end(), outside)) {
+    given_indices_ = this->indices_;
+    this->indices_ = pcl::make_shared<pcl::Indices>();
+    std::remove_copy_if(given_indices_->begin(), given_indices_->end(), std::back_inserter(*this->indices_), outside);
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(unsigned int threads)
+{
+  threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,170 @@
+#include "registration/cloud_pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Voxels of a thinned cloud, in extents.
+constexpr double kRoughVoxel = 0.03;
+
+/// Coordinates are bounded so that their squares stay finite in single precision.
+constexpr float kLargest = 1e18F;
+
+bool isFinite(const CloudView& cloud, std::size_t i)
+{
+  // NaN compares false.
+  return std::abs(cloud.x(i)) < kLargest && std::abs(cloud.y(i)) < kLargest && std::abs(cloud.z(i)) < kLargest;
+}
+
+bool isZero(const CloudView& cloud, std::size_t i)
+{
+  return cloud.x(i) == 0.0F && cloud.y(i) == 0.0F && cloud.z(i) == 0.0F;
+}
+
+/// The points that take part. One point at the origin may be a model's corner; several stand for "no return".
+std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
+{
+  std::vector<int> usable;
+  usable.reserve(cloud.size);
+  std::size_t zeros = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (isFinite(cloud, i) && (selectable.empty() || selectable[i] != 0)) {
+      usable.push_back(static_cast<int>(i));
+      zeros += isZero(cloud, i) ? 1 : 0;
+    }
+  }
+  if (zeros > 1 && zeros < usable.size()) {
+    usable.erase(
+        std::remove_if(usable.begin(), usable.end(), [&](int i) { return isZero(cloud, static_cast<std::size_t>(i)); }),
+        usable.end());
+  }
+  return usable;
+}
+
+CloudLevel makeLevel(const std::vector<Eigen::Vector3f>& points, const std::vector<int>& numbers, int threads)
+{
+  CloudLevel level;
+  level.tree = PointTree(points);
+  level.number.reserve(points.size());
+  for (const int i : level.tree.order()) {
+    level.number.push_back(numbers[static_cast<std::size_t>(i)]);
+  }
+  LocalShapes shapes = findLocalShapes(level.tree, threads);
+  level.shapes = std::move(shapes.shape);
+  level.spacing = shapes.spacing;
+  return level;
+}
+
+/// A voxel's place in the lattice, and a point in it.
+struct VoxelMember {
+  std::array<std::int32_t, 3> voxel;
+  int point;
+};
+
+std::vector<VoxelMember> sortIntoVoxels(const std::vector<Eigen::Vector3f>& points, double voxel_size)
+{
+  std::vector<VoxelMember> members(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = std::floor(static_cast<double>(points[i][axis]) / voxel_size);
+      members[i].voxel[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(std::clamp(place, -1e9, 1e9));
+    }
+    members[i].point = static_cast<int>(i);
+  }
+  std::sort(members.begin(), members.end(), [](const VoxelMember& a, const VoxelMember& b) {
+    return a.voxel != b.voxel ? a.voxel < b.voxel : a.point < b.point;
+  });
+  return members;
+}
+
+/// The members' mean and the one of them that is nearest to it.
+std::pair<Eigen::Vector3f, int> summarize(const std::vector<Eigen::Vector3f>& points, const VoxelMember* first,
+                                          const VoxelMember* last)
+{
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const VoxelMember* member = first; member != last; ++member) {
+    sum += points[static_cast<std::size_t>(member->point)].cast<double>();
+  }
+  const Eigen::Vector3f mean = (sum / static_cast<double>(last - first)).cast<float>();
+  const VoxelMember* nearest = std::min_element(first, last, [&](const VoxelMember& a, const VoxelMember& b) {
+    return (points[static_cast<std::size_t>(a.point)] - mean).squaredNorm() <
+           (points[static_cast<std::size_t>(b.point)] - mean).squaredNorm();
+  });
+  return {mean, nearest->point};
+}
+
+/// The means within voxels, and for each the number of the point nearest to it.
+std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::vector<Eigen::Vector3f>& points,
+                                                                     const std::vector<int>& numbers, double voxel_size)
+{
+  const std::vector<VoxelMember> members = sortIntoVoxels(points, voxel_size);
+  std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> result;
+  for (std::size_t first = 0; first < members.size();) {
+    std::size_t last = first + 1;
+    while (last < members.size() && members[last].voxel == members[first].voxel) {
+      ++last;
+    }
+    const auto [mean, nearest] = summarize(points, &members[first], members.data() + last);
+    result.first.push_back(mean);
+    result.second.push_back(numbers[static_cast<std::size_t>(nearest)]);
+    first = last;
+  }
+  return result;
+}
+
+}  // namespace
+
+CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  const Points points = takePoints(cloud, selectable);
+  levels_.push_back(makeLevel(points.position, points.number, threads));
+}
+
+CloudPyramid CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  CloudPyramid pyramid;
+  const Points points = pyramid.takePoints(cloud, selectable);
+  const double voxel_size = std::max(kRoughVoxel * pyramid.extent_, std::numeric_limits<double>::min());
+  const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
+  pyramid.levels_.push_back(makeLevel(means, numbers, threads));
+  return pyramid;
+}
+
+CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
+{
+  Points points;
+  points.number = usablePoints(cloud, selectable);
+  const auto position = [&](int i) {
+    const auto n = static_cast<std::size_t>(i);
+    return Eigen::Vector3d(cloud.x(n), cloud.y(n), cloud.z(n));
+  };
+  const double count = std::max(1.0, static_cast<double>(points.number.size()));
+  for (const int i : points.number) {
+    origin_ += position(i);
+  }
+  origin_ /= count;
+  points.position.reserve(points.number.size());
+  double squares = 0.0;
+  for (const int i : points.number) {
+    const Eigen::Vector3d relative = position(i) - origin_;
+    squares += relative.squaredNorm();
+    points.position.emplace_back(relative.cast<float>());
+  }
+  extent_ = std::sqrt(squares / count);
+  return points;
+}
+
+void CloudPyramid::addLevel(double voxel_size, int threads)
+{
+  const CloudLevel& finer = levels_.back();
+  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel_size);
+  levels_.push_back(makeLevel(means, numbers, threads));
+}
+
+}  // namespace pcl_floam

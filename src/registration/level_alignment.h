@@ -1,0 +1,107 @@
+/// \file level_alignment.h
+/// One resolution of a cloud registration: matches, weights, and the step that follows.
+#pragma once
+
+#include "registration/cloud_pyramid.h"
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/registration/cloud_registration.h>
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Sums over all matches, for a perturbation on the left that turns about the source's centroid.
+struct AlignmentSums {
+  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
+  double cost = 0.0;              ///< half the sum of the kernel's costs, m^2
+  double weighted_squares = 0.0;  ///< sum w d^2, m^2
+  double weight = 0.0;            ///< sum w tr(M): one per residual's dimension
+  int lines = 0, planes = 0, points = 0;
+  int line_inliers = 0, plane_inliers = 0;
+
+  AlignmentSums& operator+=(const AlignmentSums& other);
+  [[nodiscard]] int count() const { return lines + planes + points; }
+};
+
+/// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
+class LevelAlignment {
+public:
+  /// \param along how much a direction along a surface counts against the one across it: 1 draws points to points
+  /// \param robust whether far matches are left out and large residuals count less
+  LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
+                 double along, bool robust = true);
+
+  /// Finds the matches at a pose and sums up what they say.
+  /// \param to_frames from the pose between the origins to the one between the clouds' frames
+  template <typename ToFrames>
+  AlignmentSums evaluate(const SE3& pose, const ToFrames& to_frames)
+  {
+    findMatches(pose, to_frames);
+    if (run_.reject || run_.wants_matches) {
+      listMatches();
+    }
+    if (run_.reject) {
+      run_.reject(to_frames(pose), matches_);
+      keepListed();
+    }
+    weigh(pose);
+    return sum(pose);
+  }
+
+  [[nodiscard]] const std::vector<PointMatch>& matches() const { return matches_; }
+  [[nodiscard]] double spacing() const { return spacing_; }
+
+private:
+  /// What a match says: the difference of its points, and how much each direction of it counts.
+  struct Residual {
+    Eigen::Vector3f difference;
+    float xx, xy, xz, yy, yz, zz;  ///< M, symmetric
+    float squared;                 ///< difference^T M difference, m^2; negative without a match
+  };
+
+  template <typename ToFrames>
+  void findMatches(const SE3& pose, const ToFrames& to_frames)
+  {
+    if (run_.search && finest_) {
+      askUsersSearch(pose, to_frames(pose));
+    } else {
+      searchNearest(pose);
+    }
+    if (run_.reciprocal) {
+      keepReciprocal(pose);
+    }
+    narrow();
+  }
+  void askUsersSearch(const SE3& pose, const SE3& target_T_source);
+  void searchNearest(const SE3& pose);
+  void keepReciprocal(const SE3& pose);
+  void narrow();
+  void listMatches();
+  void keepListed();
+  void weigh(const SE3& pose);
+  [[nodiscard]] Residual residual(const SE3& pose, std::size_t i) const;
+  [[nodiscard]] AlignmentSums sum(const SE3& pose) const;
+  void accumulate(const SE3& pose, std::size_t i, AlignmentSums& sums) const;
+
+  const CloudLevel& source_;
+  const CloudLevel& target_;
+  const CloudRegistrationRun& run_;
+  bool finest_;
+  double along_;
+  bool robust_;
+  double spacing_;
+  double gate_;               ///< m; pairs farther apart are no matches
+  double scale_ = 0.0;        ///< of the robust kernel, m
+  std::vector<int> nearest_;  ///< per source point, the last iteration's nearest target point: a bound for the next
+  std::vector<int> match_;    ///< per source point, the target point, or -1
+  std::vector<float> squared_distance_;  ///< of the match
+  std::vector<PointMatch> matches_;
+  std::vector<Residual> residuals_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,70 @@
+/// \file point_tree.h
+/// Nearest neighbours among a fixed set of points, fast for queries that come in spatial order.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace pcl_floam {
+
+/// The nearest points of one query, nearest first. Fixed room: no allocation.
+struct NearestPoints {
+  static constexpr int kCapacity = 40;
+
+  std::array<float, kCapacity> squared_distance;
+  std::array<int, kCapacity> index;
+  int wanted = 1;
+  int count = 0;
+};
+
+/// A balanced KD-tree in single precision.
+///
+/// The points are kept in the tree's order, in which neighbours lie near each other in memory: going through one
+/// tree's points in order and asking another one is several times faster than in any other order. Among points that
+/// are equally near, the one with the lexicographically smallest coordinates counts as nearer, so that the order of the
+/// points given has no influence.
+class PointTree {
+public:
+  PointTree() = default;
+  /// \param points finite
+  explicit PointTree(const std::vector<Eigen::Vector3f>& points);
+
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+  [[nodiscard]] std::size_t size() const { return points_.size(); }
+
+  /// The points in the tree's order, which the indices of the searches refer to.
+  [[nodiscard]] const std::vector<Eigen::Vector3f>& points() const { return points_; }
+
+  /// For each point in the tree's order, where it stood among the points given.
+  [[nodiscard]] const std::vector<int>& order() const { return order_; }
+
+  /// The nearest point no farther than \p limit (squared), -1 if there is none. \p limit becomes its squared distance.
+  [[nodiscard]] int nearest(const Eigen::Vector3f& query, float& limit) const;
+
+  /// The up to \p k nearest points; \p k at most NearestPoints::kCapacity.
+  void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result) const;
+
+private:
+  struct Node {
+    float below = 0.0F;  ///< largest coordinate of the first child along the axis
+    float above = 0.0F;  ///< smallest one of the second
+    int axis = -1;       ///< -1 for a leaf
+    int second = 0;      ///< number of the second child; the first follows its parent
+    int first_point = 0;
+    int last_point = 0;  ///< one past
+  };
+
+  int build(const std::vector<Eigen::Vector3f>& points, int first, int last);
+  template <typename Collector>
+  void search(int node, const Eigen::Vector3f& query, float squared, Eigen::Vector3f& offset,
+              Collector& collector) const;
+
+  std::vector<Eigen::Vector3f> points_;
+  std::vector<int> order_;
+  std::vector<Node> nodes_;
+};
+
+}  // namespace pcl_floam

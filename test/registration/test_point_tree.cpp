@@ -1,0 +1,113 @@
+// The search tree against looking at every point.
+#include "registration/point_tree.h"
+
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace pcl_floam::test {
+namespace {
+
+std::vector<Eigen::Vector3f> randomPoints(unsigned seed, int count, double flatness)
+{
+  std::mt19937 random(seed);
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < count; ++i) {
+    points.emplace_back(static_cast<float>(uniform(random, 1.0)), static_cast<float>(uniform(random, 1.0)),
+                        static_cast<float>(uniform(random, flatness)));
+  }
+  return points;
+}
+
+std::vector<float> sortedDistances(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& query)
+{
+  std::vector<float> distances;
+  for (const Eigen::Vector3f& point : points) {
+    distances.push_back((point - query).squaredNorm());
+  }
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
+{
+  for (const double flatness : {1.0, 0.0}) {
+    const auto points = randomPoints(1, 2000, flatness);
+    const PointTree tree(points);
+    for (const Eigen::Vector3f& query : randomPoints(2, 300, 2.0)) {
+      const std::vector<float> expected = sortedDistances(points, query);
+      float squared = std::numeric_limits<float>::max();
+      const int found = tree.nearest(query, squared);
+      ASSERT_GE(found, 0);
+      EXPECT_EQ(squared, expected[0]);
+      EXPECT_EQ((tree.points()[static_cast<std::size_t>(found)] - query).squaredNorm(), expected[0]);
+      NearestPoints nearest;
+      tree.nearest(query, 14, nearest);
+      ASSERT_EQ(nearest.count, 14);
+      for (std::size_t i = 0; i < 14; ++i) {
+        EXPECT_EQ(nearest.squared_distance[i], expected[i]);
+      }
+    }
+  }
+}
+
+TEST(PointTree, TheLimitIsIncluded)
+{
+  const PointTree tree({{1.0F, 0.0F, 0.0F}});
+  float limit = 1.0F;
+  EXPECT_EQ(tree.nearest({0.0F, 0.0F, 0.0F}, limit), 0);
+  limit = 0.999F;
+  EXPECT_EQ(tree.nearest({0.0F, 0.0F, 0.0F}, limit), -1);
+}
+
+TEST(PointTree, OrderTellsWhereAPointCameFrom)
+{
+  const auto points = randomPoints(3, 500, 1.0);
+  const PointTree tree(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(tree.points()[i], points[static_cast<std::size_t>(tree.order()[i])]);
+  }
+}
+
+TEST(PointTree, TiesDoNotDependOnTheOrderOfThePoints)
+{
+  std::vector<Eigen::Vector3f> grid;
+  for (int i = 0; i < 1000; ++i) {
+    grid.emplace_back(static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100));
+  }
+  auto shuffled = grid;
+  std::reverse(shuffled.begin(), shuffled.end());
+  std::swap_ranges(shuffled.begin(), shuffled.begin() + 300, shuffled.begin() + 500);
+  const PointTree tree(grid);
+  const PointTree other(shuffled);
+  for (const Eigen::Vector3f& query : grid) {
+    NearestPoints a;
+    NearestPoints b;
+    tree.nearest(query, 10, a);
+    other.nearest(query, 10, b);
+    for (std::size_t i = 0; i < 10; ++i) {
+      EXPECT_EQ(tree.points()[static_cast<std::size_t>(a.index[i])],
+                other.points()[static_cast<std::size_t>(b.index[i])]);
+    }
+  }
+}
+
+TEST(PointTree, EqualPointsAndNoPoints)
+{
+  const PointTree equal(std::vector<Eigen::Vector3f>(100, Eigen::Vector3f(1.0F, 2.0F, 3.0F)));
+  NearestPoints nearest;
+  equal.nearest({0.0F, 0.0F, 0.0F}, 5, nearest);
+  EXPECT_EQ(nearest.count, 5);
+  const PointTree none;
+  float limit = 1.0F;
+  EXPECT_EQ(none.nearest({0.0F, 0.0F, 0.0F}, limit), -1);
+  none.nearest({0.0F, 0.0F, 0.0F}, 5, nearest);
+  EXPECT_EQ(nearest.count, 0);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
