@@ -17,14 +17,21 @@ WORLDS = {"warehouse": ("vlp16", "ate", 0.015, 60), "room": ("vlp16", "ate", 0.0
           "tunnel": ("vlp16", "across", 0.02, 60)}
 # variant: options of the simulator, sensor
 VARIANTS = {"plain": ([], None), "dropout": (["--dropout", "0.3"], None), "noise": (["--range-noise", "0.05"], None),
-            "vlp16": ([], "vlp16"), "hdl32": ([], "hdl32"), "hdl64": ([], "hdl64"), "os128": ([], "os128")}
-NAMES = {"plain": "usual sensor", "dropout": "30 % of returns missing", "noise": "5 cm range noise"}
+            "vlp16": ([], "vlp16"), "hdl32": ([], "hdl32"), "hdl64": ([], "hdl64"), "os128": ([], "os128"),
+            # Only when asked for by --variants:
+            "half-blind": (["--field-of-view", "120"], None), "gap": (["--gap", "5:6"], None),
+            "sparse": (["--dropout", "0.9"], None), "wide-beam": (["--beam-divergence", "3"], None),
+            "truck": (["--truck"], None)}
+USUAL = ["plain", "dropout", "noise", "vlp16", "hdl32", "hdl64", "os128"]
+NAMES = {"plain": "usual sensor", "dropout": "30 % of returns missing", "noise": "5 cm range noise",
+         "half-blind": "120° field of view", "gap": "a second without returns", "sparse": "90 % of returns missing",
+         "wide-beam": "beam 3 mrad wide", "truck": "a lorry beside"}
 UNIT = {"ate": ("ATE / cm", 100, 2), "across": ("across / cm", 100, 2), "t_rel": ("t_rel / %", 1, 3)}
 
 
 def arguments(parser):
     parser.add_argument("--subset", default=",".join(WORLDS), help="worlds")
-    parser.add_argument("--variants", default=",".join(VARIANTS), help="of the scans")
+    parser.add_argument("--variants", default=",".join(USUAL), help="of the scans: " + ", ".join(VARIANTS))
     parser.add_argument("--seeds", default="21,22,23")
     parser.add_argument("--no-pcl", action="store_true", help="without GICP and NDT")
 
