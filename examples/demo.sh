@@ -4,7 +4,7 @@
 #   bash examples/demo.sh                            simulates a lidar in a warehouse and tracks it
 #   bash examples/demo.sh SCANS [OPTION ...]         tracks your scans; options as of pcl_floam_odometry
 #
-# Results are in build/demo/result.
+# Results are in build/demo/result: trajectory.svg and map.png to look at, poses, map_edges.pcd and map_planes.pcd.
 set -euo pipefail
 here="$(cd "$(dirname "$0")/.." && pwd)"
 

@@ -38,6 +38,15 @@ std::ofstream create(const std::filesystem::path& file)
   return stream;
 }
 
+/// A scan without a return. PCL refuses to write it, or warns, depending on its version.
+int writeEmpty(const std::filesystem::path& file)
+{
+  std::ofstream stream(file, std::ios::binary);
+  stream << "VERSION 0.7\nFIELDS x y z intensity time ring\nSIZE 4 4 4 4 4 2\nTYPE F F F F F U\nCOUNT 1 1 1 1 1 1\n"
+         << "WIDTH 0\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 0\nDATA binary\n";
+  return stream.good() ? 0 : -1;
+}
+
 void writePose(std::ofstream& stream, const SE3& pose)
 {
   const Eigen::Matrix4d matrix = pose.matrix();
@@ -107,7 +116,7 @@ void DatasetWriter::write(const Sweep& sweep)
     const std::filesystem::path file = scans_ / fileName(sweep.number, ".pcd");
     int result = -1;
     try {
-      result = pcl::PCDWriter().writeBinary(file.string(), sweep.cloud);
+      result = sweep.cloud.empty() ? writeEmpty(file) : pcl::PCDWriter().writeBinary(file.string(), sweep.cloud);
     } catch (const pcl::IOException& exception) {
       throw std::runtime_error(file.string() + ": " + exception.what());
     }

@@ -27,9 +27,20 @@ SimulationOptions checked(const SimulationOptions& options)
 {
   check(options.range_noise >= 0.0 && options.range_noise < 10.0, "the range noise must be from 0 to 10 m");
   check(options.dropout >= 0.0 && options.dropout <= 1.0, "the dropout must be a fraction from 0 to 1");
+  check(options.field_of_view >= 0.0 && options.field_of_view <= 360.0,
+        "the field of view must be from 0 to 360 degrees");
+  check(options.gap_from <= options.gap_to, "the gap must not end before it begins");
+  check(options.beam_divergence >= 0.0 && options.beam_divergence < 0.1, "the beam must be from 0 to 0.1 rad wide");
+  check(options.path >= 1 && options.path < 1000, "the path must be from 1 to 999");
   check(options.start >= 0.0, "the start must not be negative");
   check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
   return options;
+}
+
+/// Other ways through a world see other noise.
+std::uint64_t sweepPurpose(const SimulationOptions& options, std::size_t number)
+{
+  return kSweepPurpose * static_cast<std::uint64_t>(options.path) + number;
 }
 
 /// Intensity as Velodyne gives it: 0 to 255.
@@ -65,7 +76,8 @@ struct Simulation::Firing {
 
 Simulation::Simulation(const SimulationOptions& options) : options_(checked(options))
 {
-  world_ = std::make_unique<WorldModel>(makeWorld(options_.world, {options_.seed, options_.smooth}));
+  world_ = std::make_unique<WorldModel>(
+      makeWorld(options_.world, WorldOptions{options_.seed, options_.smooth, options_.path, options_.truck}));
   lidar_ = lidar(options_.sensor.empty() ? world_->world.default_sensor : options_.sensor);
   // The lasers fire at a fixed rate: a faster head has fewer columns.
   lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
@@ -101,16 +113,47 @@ void Simulation::placeMovingObjects(double start_time, double end_time)
   world_->scene.commit();
 }
 
+bool Simulation::isBlind(double azimuth, double time) const
+{
+  const bool outside =
+      options_.field_of_view < 360.0 && std::abs(azimuth) > 0.5 * options_.field_of_view * M_PI / 180.0;
+  return outside || (time >= options_.gap_from && time < options_.gap_to);
+}
+
+/// What a beam brings back. A wide beam that meets an edge lights two surfaces at once: if they are less than a pulse
+/// apart, their echoes melt into one between them.
+RayHit Simulation::echo(const Firing& firing, const Eigen::Vector3d& beam, Random& random) const
+{
+  constexpr double kPulse = 1.5;  // m, what 10 ns of light cover there and back
+  const Eigen::Vector3f origin = firing.world_T_sensor.translation.cast<float>();
+  const auto reach = static_cast<float>(lidar_.max_range);
+  const auto fraction = static_cast<float>(firing.fraction);
+  const auto cast = [&](const Eigen::Vector3d& direction) {
+    const Eigen::Vector3f world = (firing.world_T_sensor.rotation * direction).cast<float>();
+    return world_->scene.cast(origin, world, reach, fraction);
+  };
+  RayHit hit = cast(beam);
+  if (options_.beam_divergence > 0.0) {
+    const double angle = random.uniform(0.0, 2.0 * M_PI);
+    const Eigen::Vector3d side = beam.unitOrthogonal();
+    const Eigen::Vector3d off = std::cos(angle) * side + std::sin(angle) * beam.cross(side);
+    const RayHit second = cast((beam + 0.5 * options_.beam_divergence * off).normalized());
+    const double between = static_cast<double>(second.distance) - static_cast<double>(hit.distance);
+    if (hit.exists() && second.exists() && std::abs(between) < kPulse) {
+      hit.distance += static_cast<float>(random.uniform(0.0, 0.5) * between);
+    }
+  }
+  return hit;
+}
+
 void Simulation::fire(const Firing& firing, Random& random, Sweep& sweep) const
 {
-  const Eigen::Vector3f origin = firing.world_T_sensor.translation.cast<float>();
+  const bool blind = isBlind(firing.azimuth, sweep.start_time + firing.time);
   for (int ring = 0; ring < lidar_.rings(); ++ring) {
     const double elevation = lidar_.elevations[static_cast<std::size_t>(ring)];
     const Eigen::Vector3d beam(std::cos(elevation) * std::cos(firing.azimuth),
                                std::cos(elevation) * std::sin(firing.azimuth), std::sin(elevation));
-    const Eigen::Vector3f direction = (firing.world_T_sensor.rotation * beam).cast<float>();
-    const RayHit hit = world_->scene.cast(origin, direction, static_cast<float>(lidar_.max_range),
-                                          static_cast<float>(firing.fraction));
+    const RayHit hit = blind ? RayHit() : echo(firing, beam, random);
     const bool seen = hit.exists() && lidar_.detects(hit, random) && !random.chance(options_.dropout);
     if (!seen && !options_.organized) {
       continue;
@@ -151,7 +194,7 @@ Sweep Simulation::sweep(std::size_t number)
     sweep.exact_at_end.resize(all);
     sweep.moving.resize(all);
   }
-  Random random(options_.seed, kSweepPurpose + number);
+  Random random(options_.seed, sweepPurpose(options_, number));
   const SE3 end_T_world = sweep.world_T_end.inverse();
   for (int column = 0; column < lidar_.columns; ++column) {
     const double fraction = static_cast<double>(column) / lidar_.columns;

@@ -28,7 +28,14 @@ struct SimulationOptions {
   double rate = 10.0;         ///< sweeps a second
   double start = 0.0;         ///< s into the world's motion where sweep 0 begins: a start in motion
   HeadRotation rotation = HeadRotation::clockwise;
+  /// Two numbers, s after the start of sweep 0: nothing returns from the one to the other. Equal: no gap.
+  double gap_from = 0.0, gap_to = 0.0;
+  double field_of_view = 360.0;  ///< degrees about the forward direction; what lies outside is never seen
+  /// rad; the beam's width. At depth edges a part of the returns then lies between the near and the far surface.
+  double beam_divergence = 0.0;
   bool smooth = false;     ///< see WorldOptions::smooth
+  int path = 1;            ///< see WorldOptions::path
+  bool truck = false;      ///< see WorldOptions::truck
   bool organized = false;  ///< clouds of rings x columns with NaN where there is no return
 };
 
@@ -83,6 +90,8 @@ private:
 
   void placeMovingObjects(double start_time, double end_time);
   void fire(const Firing& firing, Random& random, Sweep& sweep) const;
+  [[nodiscard]] bool isBlind(double azimuth, double time) const;
+  [[nodiscard]] RayHit echo(const Firing& firing, const Eigen::Vector3d& beam, Random& random) const;
 
   SimulationOptions options_;
   std::unique_ptr<WorldModel> world_;

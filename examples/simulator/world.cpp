@@ -13,7 +13,8 @@ struct Entry {
 };
 
 constexpr Entry kWorlds[] = {{"warehouse", makeWarehouse}, {"room", makeRoom},         {"urban", makeUrban},
-                             {"highway", makeHighway},     {"corridor", makeCorridor}, {"handheld", makeHandheld}};
+                             {"highway", makeHighway},     {"corridor", makeCorridor}, {"tunnel", makeTunnel},
+                             {"handheld", makeHandheld}};
 
 }  // namespace
 
@@ -39,6 +40,12 @@ const std::vector<std::string>& worldNames()
     return list;
   }();
   return names;
+}
+
+Random randomOfPath(const WorldOptions& options, const Random& world)
+{
+  constexpr std::uint64_t kPathPurpose = 100;
+  return options.path == 1 ? world : Random(options.seed, kPathPurpose + static_cast<std::uint64_t>(options.path));
 }
 
 void removeCollisions(World& world)

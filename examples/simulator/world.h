@@ -33,6 +33,8 @@ struct World {
 struct WorldOptions {
   std::uint64_t seed = 1;
   bool smooth = false;  ///< corridor only: no doors, nothing that could tell how far one has come
+  int path = 1;         ///< 1 is the usual way; 2, 3 ... are other ways through what stands there for the same seed
+  bool truck = false;   ///< urban, highway: a lorry that drives beside the sensor and fills a third of its view
 };
 
 /// Racks with posts and uneven loads, pillars, machines, walking workers; 330 m at up to 2 m/s.
@@ -50,6 +52,9 @@ struct WorldOptions {
 /// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
 [[nodiscard]] World makeCorridor(const WorldOptions& options);
 
+/// The corridor without doors: nothing tells how far one has come.
+[[nodiscard]] World makeTunnel(const WorldOptions& options);
+
 /// An office room; the sensor is swung by hand at up to 120 degrees a second about all axes.
 [[nodiscard]] World makeHandheld(const WorldOptions& options);
 
@@ -59,6 +64,10 @@ struct WorldOptions {
 
 /// The names that \ref makeWorld knows.
 [[nodiscard]] const std::vector<std::string>& worldNames();
+
+/// The random numbers of a way through a world. The first way's are the world's own; the others leave those as they
+/// are, so that what stands is the same.
+[[nodiscard]] Random randomOfPath(const WorldOptions& options, const Random& world);
 
 /// Takes out the moving objects that would run into the sensor.
 void removeCollisions(World& world);

@@ -4,6 +4,7 @@
 #include "command_line.h"
 #include "ground_truth.h"
 #include "interruption.h"
+#include "map_picture.h"
 #include "odometry_options.h"
 #include "odometry_run.h"
 #include "run_summary.h"
@@ -25,7 +26,7 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     "\nResults: poses.kitti.txt, poses.tum.txt, timing.csv (all written scan by scan), map_edges.pcd,\n"
-    "map_planes.pcd, summary.json, trajectory.svg (drawn by gnuplot).\n"
+    "map_planes.pcd, summary.json, trajectory.svg (drawn by gnuplot), map.png.\n"
     "\nExit status: 0 all scans tracked; 1 finished, but a scan could not be read or tracked or a result not\n"
     "written; 2 bad option or path; 130, 143 interrupted: the results so far are written.\n"
     "\nExamples:\n"
@@ -88,6 +89,20 @@ void drawPlot(const OdometryOptions& options, const OdometryPipeline& odometry, 
   }
 }
 
+void drawMapPicture(const OdometryOptions& options, const OdometryPipeline& odometry, const RunResult& result)
+{
+  MapScene scene;
+  scene.map = mapPoints(odometry.map());
+  for (const SE3& pose : result.poses) {
+    scene.path.push_back(pose.translation);
+  }
+  const std::filesystem::path image = options.output / "map.png";
+  const std::string problem = drawMap(scene, image);
+  if (!problem.empty()) {
+    std::cerr << image.string() << ": not drawn: " << problem << '\n';
+  }
+}
+
 int run(const OdometryOptions& options, Preparation& prepared)
 {
   noteInterruptions();
@@ -104,6 +119,7 @@ int run(const OdometryOptions& options, Preparation& prepared)
   written &= writeResult([&] { writeTextFile(options.output / "summary.json", toJson(summary).dump(2) + "\n"); });
   if (!options.plot.empty()) {
     drawPlot(options, prepared.odometry, result, pairs);
+    drawMapPicture(options, prepared.odometry, result);
   }
   if (!options.quiet) {
     std::cout << describe(summary) << '\n';

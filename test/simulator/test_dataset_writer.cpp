@@ -3,6 +3,8 @@
 #include "dataset_writer.h"
 #include "support/temporary_folder.h"
 
+#include <pcl_floam/io/scan_source.h>
+
 #include <pcl/io/pcd_io.h>
 
 #include <gtest/gtest.h>
@@ -70,6 +72,32 @@ TEST(DatasetWriter, PcdHoldsTheSweep)
     ASSERT_EQ(read[i].ring, sweep.cloud[i].ring);
     ASSERT_EQ(read[i].time, sweep.cloud[i].time);
     ASSERT_EQ(read[i].intensity, sweep.cloud[i].intensity);
+  }
+}
+
+TEST(DatasetWriter, SweepsWithoutAReturnAreEmptyScans)
+{
+  const test::TemporaryFolder folder;
+  SimulationOptions options = smallOptions();
+  options.gap_to = 0.1;
+  Simulation simulation(options);
+  {
+    DatasetWriter writer(folder.path(), DatasetFormat::pcd);
+    writer.write(simulation.sweep(0));
+    writer.write(simulation.sweep(1));
+  }
+  const ScanSource scans(folder.path() / "scans");
+  ASSERT_EQ(scans.size(), 2U);
+  pcl::PCLPointCloud2 empty;
+  pcl::PCLPointCloud2 full;
+  scans.read(0, empty);
+  scans.read(1, full);
+  EXPECT_EQ(empty.width * empty.height, 0U);
+  EXPECT_GT(full.width * full.height, 1000U);
+  ASSERT_EQ(empty.fields.size(), full.fields.size());
+  for (std::size_t i = 0; i < full.fields.size(); ++i) {
+    EXPECT_EQ(empty.fields[i].name, full.fields[i].name);
+    EXPECT_EQ(empty.fields[i].datatype, full.fields[i].datatype);
   }
 }
 

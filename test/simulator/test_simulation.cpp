@@ -50,7 +50,7 @@ double distanceToSmoothCorridor(const Eigen::Vector3d& p)
 class EveryWorld : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Simulation, EveryWorld,
-                         testing::Values("warehouse", "room", "urban", "highway", "corridor", "handheld"),
+                         testing::Values("warehouse", "room", "urban", "highway", "corridor", "tunnel", "handheld"),
                          [](const auto& parameter) { return std::string(parameter.param); });
 
 TEST_P(EveryWorld, IsTheSameForTheSameSeedInAnyOrder)
@@ -77,7 +77,7 @@ TEST_P(EveryWorld, SweepsFollowOneAnotherWithoutAGap)
 TEST_P(EveryWorld, MotionKeepsToItsBoundsAndIsSmooth)
 {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const World world = makeWorld(GetParam(), {seed, false});
+    const World world = makeWorld(GetParam(), {seed, false, 1, false});
     const MotionSpline& motion = world.sensor_motion;
     EXPECT_LE(motion.accelerationBound(), world.acceleration) << "seed " << seed;
     constexpr double kStep = 0.01;
@@ -150,7 +150,7 @@ TEST(Simulation, CorridorsDoorsAreItsOnlyStructure)
 TEST(Simulation, HandheldTurnsAtUpTo120DegreesASecond)
 {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const MotionSpline motion = makeWorld("handheld", {seed, false}).sensor_motion;
+    const MotionSpline motion = makeWorld("handheld", {seed, false, 1, false}).sensor_motion;
     double peak = 0.0;
     for (double t = 0.0; t < motion.duration(); t += 0.01) {
       peak = std::max(peak, rotationAngle((motion.pose(t).inverse() * motion.pose(t + 0.01)).rotation) / 0.01);
@@ -168,7 +168,7 @@ TEST(Simulation, WorldsAreAsLongAndAsFastAsTheySay)
   constexpr std::array<Expectation, 4> kExpectations{
       {{"warehouse", 300.0, 2.0}, {"urban", 1000.0, 12.0}, {"highway", 1000.0, 25.0}, {"corridor", 125.0, 1.5}}};
   for (const auto& [world, length, speed] : kExpectations) {
-    const MotionSpline motion = makeWorld(world, {3, false}).sensor_motion;
+    const MotionSpline motion = makeWorld(world, {3, false, 1, false}).sensor_motion;
     double gone = 0.0;
     double fastest = 0.0;
     for (double t = 0.0; t < motion.duration(); t += 0.1) {
@@ -182,7 +182,7 @@ TEST(Simulation, WorldsAreAsLongAndAsFastAsTheySay)
 
 TEST(Simulation, UrbanReturnsToItsStart)
 {
-  const MotionSpline motion = makeWorld("urban", {1, false}).sensor_motion;
+  const MotionSpline motion = makeWorld("urban", {1, false, 1, false}).sensor_motion;
   const Eigen::Vector3d apart = motion.pose(motion.duration()).translation - motion.pose(0.0).translation;
   EXPECT_LT(apart.norm(), 1.0);
 }
@@ -190,7 +190,7 @@ TEST(Simulation, UrbanReturnsToItsStart)
 TEST(Simulation, NothingRunsIntoTheSensor)
 {
   for (const std::string& name : worldNames()) {
-    const World world = makeWorld(name, {1, false});
+    const World world = makeWorld(name, {1, false, 1, false});
     for (const MovingObject& object : world.moving) {
       for (double t = 0.0; t < world.sensor_motion.duration(); t += 0.5) {
         const Eigen::Vector3d apart = object.motion.pose(t).translation - world.sensor_motion.pose(t).translation;

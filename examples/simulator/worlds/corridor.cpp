@@ -76,16 +76,27 @@ World makeCorridor(const WorldOptions& options)
              Eigen::Vector3d(kWay + kBeyond, kWidth, z), Eigen::Vector3d(-kBeyond, kWidth, z)},
             z > 0.0 ? 0.7 : 0.3);
   }
-  const SmoothNoise weave(random, 0.12, 1.0 / 40.0, 1.0 / 18.0);
+  Random own = randomOfPath(options, random);
+  // Other ways keep to one side, and every second one comes back.
+  const double aside = options.path == 1 ? 0.0 : own.uniform(-0.35, 0.35);
+  const bool back = options.path % 2 == 0;
+  const SmoothNoise weave(own, 0.12, 1.0 / 40.0, 1.0 / 18.0);
   std::vector<Eigen::Vector2d> points;
   for (double x = 0.0; x <= kWay; x += 1.0) {
-    points.emplace_back(x, weave(x));
+    points.emplace_back(back ? kWay - x : x, aside + weave(x));
   }
   DriveStyle style;
   style.speed = 1.5;
-  world.sensor_motion = drive(PathLine(points, 2.0), style, {0.9, 0.5, 0.004, 0.002}, Terrain(), random);
+  world.sensor_motion = drive(PathLine(points, 2.0), style, {0.9, 0.5, 0.004, 0.002}, Terrain(), own);
   world.acceleration = 2.0;
   return world;
+}
+
+World makeTunnel(const WorldOptions& options)
+{
+  WorldOptions smooth = options;
+  smooth.smooth = true;
+  return makeCorridor(smooth);
 }
 
 }  // namespace pcl_floam::simulator

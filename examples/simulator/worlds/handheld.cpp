@@ -27,9 +27,9 @@ double peakRate(const MotionSpline& motion)
 
 /// A sensor that is carried about and swung in all directions. It is lifted from rest within two seconds.
 /// \param swing factor on all angles
-MotionSpline swing(std::uint64_t seed, double swing)
+MotionSpline swing(const WorldOptions& options, double swing)
 {
-  Random random(seed, 61);
+  Random random = randomOfPath(options, Random(options.seed, 61));
   const SmoothNoise x(random, 1.0, 0.04, 0.12, 3);
   const SmoothNoise y(random, 0.7, 0.04, 0.12, 3);
   const SmoothNoise shake_x(random, 0.03, 0.5, 1.1);
@@ -53,13 +53,13 @@ MotionSpline swing(std::uint64_t seed, double swing)
 }
 
 /// The swing whose fastest moment has the wanted angular velocity.
-MotionSpline swingAtPeakRate(std::uint64_t seed)
+MotionSpline swingAtPeakRate(const WorldOptions& options)
 {
   double factor = 1.0;
   for (int i = 0; i < 4; ++i) {
-    factor *= kPeakRate / peakRate(swing(seed, factor));
+    factor *= kPeakRate / peakRate(swing(options, factor));
   }
-  return swing(seed, factor);
+  return swing(options, factor);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ World makeHandheld(const WorldOptions& options)
     const SE3 place = upright(i < 2 ? -3.6 : 3.6, i % 2 == 0 ? -2.2 : 2.2, 0.0, random.uniform(0.0, 3.0));
     addTable(world.still, random, place, {1.4, 0.7, 0.75});
   }
-  world.sensor_motion = swingAtPeakRate(options.seed);
+  world.sensor_motion = swingAtPeakRate(options);
   world.acceleration = 5.0;
   return world;
 }

@@ -116,6 +116,15 @@ DriveStyle cruising(double speed, double left, double first_station)
   return style;
 }
 
+/// A lorry that overtakes slowly: for half a minute it is beside the sensor.
+void addOvertakingTruck(World& world, Random& random, const PathLine& line, const Terrain& terrain, double speed)
+{
+  const DriveStyle style = cruising(speed + 0.5, kInnerLane, kFirstStation - 10.0);
+  MovingObject truck{{}, drive(line, style, {0.0, 2.6, 0.0, 0.0}, terrain, random), 2.5};
+  addTruck(truck.shape, random, SE3());
+  world.moving.push_back(truck);
+}
+
 void addTraffic(World& world, Random& random, const PathLine& line, const Terrain& terrain)
 {
   for (double station = 20.0; station < 500.0; station += random.uniform(45.0, 90.0)) {
@@ -147,11 +156,18 @@ World makeHighway(const WorldOptions& options)
   addGround(world.still, terrain, {-150.0, 1850.0, low - 90.0, high + 90.0, 2.0}, [](double, double) { return 0.2; });
   addLongStructures(world.still, random, line, terrain);
   addLandmarks(world.still, random, line, terrain);
-  DriveStyle style = cruising(kSpeed, kOuterLane, kFirstStation);
+  // Other ways are driven at other speeds.
+  Random own = randomOfPath(options, random);
+  const double speed = options.path == 1 ? kSpeed : own.uniform(20.0, 25.0);
+  DriveStyle style = cruising(speed, kOuterLane, kFirstStation);
   style.last_station = kLastStation;
-  world.sensor_motion = drive(line, style, {1.9, 2.6, 0.003, 0.008}, terrain, random);
+  world.sensor_motion = drive(line, style, {1.9, 2.6, 0.003, 0.008}, terrain, own);
+  random = options.path == 1 ? own : random;
   world.acceleration = 3.0;
   addTraffic(world, random, line, terrain);
+  if (options.truck) {
+    addOvertakingTruck(world, own, line, terrain, speed);
+  }
   return world;
 }
 

@@ -8,14 +8,15 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-/// Figures of eight within \p reach of the room's middle.
-PathLine figureOfEight(Random& random, const Eigen::Vector2d& reach, int rounds)
+/// Rounds within \p reach of the room's middle.
+/// \param ways 2 for an eight, 1 for an ellipse
+PathLine figureOfEight(Random& random, const Eigen::Vector2d& reach, int rounds, double ways)
 {
   const double shift = random.uniform(0.0, 6.28);
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= 48 * rounds; ++i) {
     const double angle = 2.0 * M_PI * i / 48.0;
-    points.emplace_back(reach.x() * std::cos(angle + shift), reach.y() * std::sin(2.0 * (angle + shift)));
+    points.emplace_back(reach.x() * std::cos(angle + shift), reach.y() * std::sin(ways * (angle + shift)));
   }
   return {points, 0.3};
 }
@@ -37,7 +38,10 @@ World makeRoom(const WorldOptions& options)
   DriveStyle style;
   style.speed = 1.0;
   const BodyStyle robot{0.6, 0.5, 0.003, 0.002};
-  world.sensor_motion = drive(figureOfEight(random, {2.2, 1.5}, 4), style, robot, floor, random);
+  Random own = randomOfPath(options, random);
+  const PathLine way = figureOfEight(own, {2.2, 1.5}, 4, options.path % 2 == 0 ? 1.0 : 2.0);
+  world.sensor_motion = drive(way, style, robot, floor, own);
+  random = options.path == 1 ? own : random;
   world.acceleration = 2.0;
   std::vector<Eigen::Vector2d> round;
   for (int i = 0; i < 60; ++i) {

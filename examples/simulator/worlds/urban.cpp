@@ -131,12 +131,22 @@ World makeUrban(const WorldOptions& options)
     }
   }
   double length = 0.0;
-  const PathLine way = loop(at, false, length);
+  // Every second way goes round the loop the other way, in the other lane; the third and fourth begin elsewhere.
+  const PathLine way = loop(at, options.path % 2 == 0, length);
   DriveStyle style = cityDriving(kSpeed);
-  style.last_station = length;
-  world.sensor_motion = drive(way, style, {1.8, 2.5, 0.005, 0.006}, terrain, random);
+  Random own = randomOfPath(options, random);
+  style.first_station = options.path > 2 ? own.uniform(20.0, 200.0) : 0.0;
+  style.last_station = style.first_station + length;
+  world.sensor_motion = drive(way, style, {1.8, 2.5, 0.005, 0.006}, terrain, own);
+  random = options.path == 1 ? own : random;
   world.acceleration = 5.0;
   addTraffic(world, random, at, way, terrain);
+  if (options.truck) {
+    style.left = kLane + 3.6;
+    MovingObject truck{{}, drive(way, style, {0.0, 2.5, 0.0, 0.0}, terrain, own), 2.5};
+    addTruck(truck.shape, own, SE3());
+    world.moving.push_back(truck);
+  }
   addPedestrians(world, random, blocks, terrain, world.sensor_motion.duration());
   return world;
 }

@@ -114,19 +114,22 @@ void addFloorObjects(TriangleMesh& mesh, Random& random)
   }
 }
 
-/// Up one aisle and down the next, then back along the wall to where it began.
-PathLine path()
+/// Up one aisle and down the next, then back along the wall to where it began. Other ways start at another aisle, and
+/// every second one goes the other way round.
+PathLine path(int number)
 {
   std::vector<Eigen::Vector2d> points;
-  for (int aisle = 0; aisle + 1 < kRows; ++aisle) {
+  for (int i = 0; i + 1 < kRows; ++i) {
+    const int aisle = (2 * (number - 1) + i) % (kRows - 1);
     const double y = 0.5 * (rowPlace(aisle) + rowPlace(aisle + 1));
-    const double side = aisle % 2 == 0 ? -22.5 : 22.5;
+    const double side = (i % 2 == 0) == (number % 2 == 1) ? -22.5 : 22.5;
     points.emplace_back(side, y);
     points.emplace_back(-side, y);
   }
-  points.emplace_back(22.5, 17.3);
-  points.emplace_back(-25.0, 17.3);
-  points.emplace_back(-25.0, points.front().y());
+  const double turn = number % 2 == 1 ? 1.0 : -1.0;
+  points.emplace_back(22.5 * turn, 17.3);
+  points.emplace_back(-25.0 * turn, 17.3);
+  points.emplace_back(-25.0 * turn, points.front().y());
   points.push_back(points.front());
   return {points, 1.6};
 }
@@ -167,7 +170,9 @@ World makeWarehouse(const WorldOptions& options)
   }
   DriveStyle style;
   style.speed = 2.0;
-  world.sensor_motion = drive(path(), style, {1.0, 0.7, 0.004, 0.003}, Terrain(), random);
+  Random own = randomOfPath(options, random);
+  world.sensor_motion = drive(path(options.path), style, {1.0, 0.7, 0.004, 0.003}, Terrain(), own);
+  random = options.path == 1 ? own : random;
   world.acceleration = 2.0;
   addWorkers(world, random, world.sensor_motion.duration());
   return world;
