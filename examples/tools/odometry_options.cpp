@@ -78,6 +78,23 @@ void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
             "how the head turns, seen from above; for --timing azimuth");
 }
 
+void addPriorMapOptions(CLI::App& app, OdometryOptions& o)
+{
+  app.option_defaults()->group("A map from an earlier run");
+  CLI::Option* map =
+      app.add_option("--map", o.map,
+                     "folder with map_edges.pcd and map_planes.pcd: poses are found\nin that map, which grows")
+          ->type_name("FOLDER");
+  app.add_flag("--localize", o.localize, "leave that map as it is")->needs(map);
+  app.add_option("--initial-pose", o.initial_pose,
+                 "where in that map the first scan is, within about 2 m and\n10 degrees: x,y,z,yaw in m and degrees; "
+                 "default 0,0,0,0")
+      ->type_name("X,Y,Z,YAW")
+      ->delimiter(',')
+      ->expected(4)
+      ->needs(map);
+}
+
 void addResultOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Results");
@@ -197,6 +214,7 @@ void addRunOptions(CLI::App& app, OdometryOptions& o)
 void addOptions(CLI::App& app, OdometryOptions& options)
 {
   addInputOptions(app, options);
+  addPriorMapOptions(app, options);
   addScanStructureOptions(app, options);
   addResultOptions(app, options);
   addCompensationOptions(app, options);

@@ -12,6 +12,7 @@
 
 #include <pcl_floam/io/map_io.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -32,7 +33,19 @@ constexpr const char* kFooter =
     "\nExamples:\n"
     "  pcl_floam_odometry scans/ -o results\n"
     "  pcl_floam_odometry 2011_09_26_drive_0001_sync/velodyne_points/data -o results --vertical-correction 0.205\n"
+    "  pcl_floam_odometry more_scans/ -o more_results --map results --localize --initial-pose 3,1.5,0,90\n"
     "  pcl_floam_odometry vlp16_scans/ -o results --sensor vlp16 --ground-truth truth.tum.txt\n";
+
+/// \param values x, y, z in m and yaw in degrees, or nothing
+SE3 initialPose(const std::vector<double>& values)
+{
+  SE3 pose;
+  if (!values.empty()) {
+    pose.translation = Eigen::Vector3d(values[0], values[1], values[2]);
+    pose.rotation = expSO3(Eigen::Vector3d(0.0, 0.0, values[3] * M_PI / 180.0));
+  }
+  return pose;
+}
 
 /// All that a run needs, checked before it begins.
 struct Preparation {
@@ -41,6 +54,10 @@ struct Preparation {
   {
     if (!options.ground_truth.empty()) {
       truth.emplace(options.ground_truth, options.calibration, scans);
+    }
+    if (!options.map.empty()) {
+      odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
+                          options.localize ? MapUse::frozen : MapUse::kept_current);
     }
     writer = std::make_unique<ResultWriter>(options.output);
   }

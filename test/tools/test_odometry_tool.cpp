@@ -141,6 +141,24 @@ TEST_F(OdometryTool, APartOfTheScansIsComparedWithItsOwnPartOfTheTruth)
   EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
 }
 
+TEST_F(OdometryTool, LocalizesInTheMapOfAnEarlierRun)
+{
+  ASSERT_EQ(odometry("scans -o mapping --compensation none --plot none").status, 0);
+  const std::string map_before = contentOf(folder.path() / "mapping" / "map_planes.pcd");
+  const Outcome outcome = odometry(
+      "scans -o result --from 4 --compensation none --map mapping --localize --initial-pose 1.0,0.2,0,2 --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Trajectory path = poses();
+  ASSERT_EQ(path.poses.size(), kScans - 4);
+  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+    const Eigen::Vector3d truth(kStep * static_cast<double>(4 + i), 0.0, 0.0);
+    EXPECT_LT((path.poses[i].translation - truth).norm(), 0.05) << i;
+  }
+  EXPECT_EQ(contentOf(folder.path() / "mapping" / "map_planes.pcd"), map_before);
+  EXPECT_EQ(odometry("scans -o result2 --map nowhere --localize").status, 2);
+  EXPECT_EQ(odometry("scans -o result2 --localize").status, 2);
+}
+
 TEST_F(OdometryTool, TruthWithTimesIsFoundByTime)
 {
   std::string times;
