@@ -124,9 +124,9 @@ void addCompensationOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Motion compensation");
   addChoice(app, "--compensation", o.parameters.compensation,
-            {{"two-stage", CompensationMode::two_stage},
+            {{"continuous", CompensationMode::continuous},
+             {"two-stage", CompensationMode::two_stage},
              {"loam", CompensationMode::iterative},
-             {"continuous", CompensationMode::continuous},
              {"none", CompensationMode::none}},
             "how the sweep's distortion is undone; none for scans that\n"
             "are compensated already (KITTI odometry benchmark)");

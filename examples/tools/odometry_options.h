@@ -25,9 +25,9 @@ struct OdometryOptions {
   std::string sensor = "auto";
   std::vector<float> elevations;            ///< degrees; of a sensor of the user's own
   std::optional<PoseInstant> pose_instant;  ///< nothing: what suits the format of the scans
-  std::filesystem::path map;         ///< of an earlier run, to go on in; empty: none
-  bool localize = false;             ///< leave that map as it is
-  std::vector<double> initial_pose;  ///< in that map: x, y, z in m, yaw in degrees; empty: its origin
+  std::filesystem::path map;                ///< of an earlier run, to go on in; empty: none
+  bool localize = false;                    ///< leave that map as it is
+  std::vector<double> initial_pose;         ///< in that map: x, y, z in m, yaw in degrees; empty: its origin
   std::string plot = ".svg";                ///< ending of the picture; empty: none
   bool quiet = false;
   OdometryParameters parameters;

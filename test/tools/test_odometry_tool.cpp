@@ -149,10 +149,10 @@ TEST_F(OdometryTool, LocalizesInTheMapOfAnEarlierRun)
       "scans -o result --from 4 --compensation none --map mapping --localize --initial-pose 1.0,0.2,0,2 --plot none");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Trajectory path = poses();
-  ASSERT_EQ(path.poses.size(), kScans - 4);
-  for (std::size_t i = 0; i < path.poses.size(); ++i) {
+  ASSERT_EQ(path.size(), kScans - 4);
+  for (std::size_t i = 0; i < path.size(); ++i) {
     const Eigen::Vector3d truth(kStep * static_cast<double>(4 + i), 0.0, 0.0);
-    EXPECT_LT((path.poses[i].translation - truth).norm(), 0.05) << i;
+    EXPECT_LT((path[i].world_T_sensor.translation - truth).norm(), 0.05) << i;
   }
   EXPECT_EQ(contentOf(folder.path() / "mapping" / "map_planes.pcd"), map_before);
   EXPECT_EQ(odometry("scans -o result2 --map nowhere --localize").status, 2);
@@ -196,7 +196,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o result --from 8", "--from 8"},
       {"scans -o result --sensor sonar", "sonar"},
       {"scans -o result --elevations 1", "2"},
-      {"scans -o result --compensation some", "two-stage|loam|none"},
+      {"scans -o result --compensation some", "continuous|two-stage|loam|none"},
       {"scans -o result --solver magic", "gauss-newton|ceres"},
       {"scans -o result --vertical-correction 90", "vertical_correction is 90"},
       {"scans -o result --edge-voxel-size 0", "edge_voxel_size is 0"},
@@ -216,8 +216,9 @@ TEST_F(OdometryTool, HelpNamesEveryChoice)
 {
   const Outcome outcome = odometry("--help");
   EXPECT_EQ(outcome.status, 0);
-  for (const char* word : {"SCANS", "--output", "two-stage|loam|none", "gauss-newton|ceres", "voxel|kdtree", "vlp16",
-                           "--ground-truth", "--vertical-correction", "--threads", "--max-scans", "--from", "Exit"}) {
+  for (const char* word :
+       {"SCANS", "--output", "continuous|two-stage|loam|none", "gauss-newton|ceres", "voxel|kdtree", "vlp16",
+        "--ground-truth", "--vertical-correction", "--threads", "--max-scans", "--from", "Exit"}) {
     EXPECT_NE(outcome.out.find(word), std::string::npos) << word;
   }
 }
