@@ -32,6 +32,9 @@ public:
   /// Weighted mean of the squared residuals, m^2.
   [[nodiscard]] double residualVariance() const { return equations_.weighted_squares / equations_.weight; }
 
+  /// Mean of the given weights: what one correspondence counts in the sums.
+  [[nodiscard]] double meanWeight() const { return equations_.given_weight / (equations_.edges + equations_.planes); }
+
 private:
   [[nodiscard]] bool isWeak(int i) const { return eigenvalues_[i] < weak_threshold_ || !(eigenvalues_[i] > 0.0); }
 

@@ -77,6 +77,7 @@ public:
     sums.cost += scalars.cost;
     sums.weighted_squares += scalars.weighted_squares;
     sums.weight += scalars.weight;
+    sums.given_weight += scalars.given_weight;
     sums.squared_extent += scalars.squared_extent;
     sums.edges += scalars.edges;
     sums.planes += scalars.planes;
@@ -89,6 +90,7 @@ public:
     double cost = 0.0;
     double weighted_squares = 0.0;
     double weight = 0.0;
+    double given_weight = 0.0;
     double squared_extent = 0.0;
     int edges = 0;
     int planes = 0;
@@ -141,6 +143,7 @@ void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double sca
   sums.scalars.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);
   sums.scalars.weighted_squares += weight * squared;
   sums.scalars.weight += weight;
+  sums.scalars.given_weight += c.weight;
   sums.scalars.squared_extent += weight * c.point.squaredNorm();
   ++count;
   inliers += robust >= 0.5 ? 1 : 0;

@@ -32,6 +32,7 @@ struct NormalEquations {
   double cost = 0.0;                            ///< half the sum of W rho(r^2), m^2
   double weighted_squares = 0.0;                ///< sum w r^2, m^2
   double weight = 0.0;                          ///< sum w
+  double given_weight = 0.0;                    ///< sum W, without the robust kernel's say
   double squared_extent = 0.0;                  ///< sum w |q|^2: spread of the points about the local origin, m^2
   int edges = 0;
   int planes = 0;

@@ -59,7 +59,7 @@ MotionPriorTerm motionPriorTerm(const MotionPrior& prior, const SweepTrajectory&
 
 double independentVariance(const InformationAnalysis& analysis)
 {
-  return kCorrelatedResiduals * analysis.residualVariance();
+  return kCorrelatedResiduals * analysis.meanWeight() * analysis.residualVariance();
 }
 
 FreeSweepSolver::FreeSweepSolver(const NormalEquations& equations, const InformationAnalysis& analysis,

@@ -35,7 +35,7 @@ struct MotionPriorTerm {
 /// \param variance m^2, of one independent residual: what turns the prior's information into the residuals' units
 [[nodiscard]] MotionPriorTerm motionPriorTerm(const MotionPrior& prior, const SweepTrajectory& now, double variance);
 
-/// Variance of a residual that is independent of the others, m^2.
+/// Variance of a residual that is independent of the others, m^2; as the weights have it, whatever they add up to.
 [[nodiscard]] double independentVariance(const InformationAnalysis& analysis);
 
 /// Pose and twist under the motion prior. Directions that the correspondences do not constrain are left to the prior.

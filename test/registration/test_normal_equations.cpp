@@ -232,6 +232,28 @@ TEST_F(NormalEquationsTest, APriorThatIsSureWins)
   EXPECT_LT((result.twist() - prior.twist).norm(), 1e-6);
 }
 
+TEST_F(NormalEquationsTest, WhatTheWeightsAddUpToDoesNotChangeThePriorsSay)
+{
+  MotionPrior prior;
+  prior.pose = perturbedStart().pose();
+  prior.twist = perturbedStart().twist();
+  prior.translation = prior.rotation = {1e-5, 1e-5, 0.0};
+  const auto stepWithWeights = [&](double factor) {
+    Correspondences correspondences = scan_.along(trajectory_);
+    for (auto& c : correspondences.edges) {
+      c.weight *= factor;
+    }
+    for (auto& c : correspondences.planes) {
+      c.weight *= factor;
+    }
+    const NormalEquations equations = equationsOf(correspondences);
+    return FreeSweepSolver(equations, InformationAnalysis(equations, 1e-4), prior, trajectory_).step();
+  };
+  EXPECT_GT(stepWithWeights(1.0).pose.norm(), 0.01);
+  EXPECT_LT((stepWithWeights(1.0).pose - stepWithWeights(1e-3).pose).norm(), 1e-9);
+  EXPECT_LT((stepWithWeights(1.0).twist - stepWithWeights(1e-3).twist).norm(), 1e-9);
+}
+
 TEST_F(NormalEquationsTest, APriorThatKnowsNothingIsNotSeen)
 {
   MotionPrior prior;
