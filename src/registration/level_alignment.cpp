@@ -77,8 +77,9 @@ void LevelAlignment::searchNearest(const SE3& pose)
     float limit = bound;
     if (nearest_[i] >= 0) {
       // The point that was nearest bounds the search: nothing farther can be nearest now.
+      constexpr float kRounding = 1.0001F;
       const float known = (target_.tree.points()[static_cast<std::size_t>(nearest_[i])] - query).squaredNorm();
-      limit = std::min(limit, known);
+      limit = std::min(limit, known * kRounding);
     }
     const int found = target_.tree.nearest(query, limit);
     match_[i] = found;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace pcl_floam {
 
@@ -25,18 +26,17 @@ constexpr double kPlaneRatio = 0.1;
 /// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
 constexpr std::size_t kFewPoints = 1000;
 
-LocalShape shapeOf(const PointTree& tree, const NearestPoints& neighbors)
+LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
   LocalShape shape;
   if (neighbors.count < 4) {
     return shape;
   }
-  const Eigen::Vector3f& anchor = tree.points()[static_cast<std::size_t>(neighbors.index[0])];
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < static_cast<std::size_t>(neighbors.count); ++i) {
     const Eigen::Vector3d offset =
-        (tree.points()[static_cast<std::size_t>(neighbors.index[i])] - anchor).cast<double>();
+        (tree.points()[static_cast<std::size_t>(neighbors.neighbors[i].index)] - point).cast<double>();
     sum += offset;
     squares += offset * offset.transpose();
   }
@@ -75,26 +75,59 @@ double spacingFrom(std::vector<float>& radii)
   return std::sqrt(3.14159265358979323846 / kNeighbors) * static_cast<double>(*middle);
 }
 
+/// The neighbourhoods of points one after the other, each of which lies near the one before.
+class Neighborhoods {
+public:
+  Neighborhoods(const PointTree& tree, int number) : tree_(tree), number_(number) {}
+
+  const NearestPoints& of(const Eigen::Vector3f& point)
+  {
+    // The neighbours of the last point are within its radius of that: so many there are here within that and the way.
+    constexpr float kRounding = 1.0001F;
+    const float bound = kRounding * (radius_ + (point - last_).norm());
+    tree_.nearest(point, number_, nearest_, std::isfinite(bound) ? bound * bound : std::numeric_limits<float>::max());
+    last_ = point;
+    radius_ = nearest_.count < number_ ? std::numeric_limits<float>::infinity() : radius();
+    return nearest_;
+  }
+
+  /// Distance of the farthest neighbour of the last point, m.
+  [[nodiscard]] float radius() const
+  {
+    return std::sqrt(nearest_.neighbors[static_cast<std::size_t>(nearest_.count - 1)].squared_distance);
+  }
+
+private:
+  const PointTree& tree_;
+  int number_;
+  NearestPoints nearest_;
+  Eigen::Vector3f last_ = Eigen::Vector3f::Zero();
+  float radius_ = std::numeric_limits<float>::infinity();
+};
+
 }  // namespace
 
 LocalShapes findLocalShapes(const PointTree& tree, int threads)
 {
+  constexpr std::ptrdiff_t kChunk = 256;
   LocalShapes shapes;
   if (tree.empty()) {
     return shapes;
   }
   shapes.shape.resize(tree.size());
   std::vector<float> radii(tree.size());
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 256)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(tree.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    NearestPoints neighbors;
-    tree.nearest(tree.points()[i], kNeighbors, neighbors);
-    shapes.shape[i] = shapeOf(tree, neighbors);
-    radii[i] = std::sqrt(neighbors.squared_distance[static_cast<std::size_t>(neighbors.count - 1)]);
-    if (shapes.shape[i].kind == ShapeKind::line) {
-      tree.nearest(tree.points()[i], kMoreNeighbors, neighbors);
-      shapes.shape[i] = shapeOf(tree, neighbors);
+  const auto size = static_cast<std::ptrdiff_t>(tree.size());
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
+  for (std::ptrdiff_t first = 0; first < size; first += kChunk) {
+    Neighborhoods few(tree, kNeighbors);
+    Neighborhoods more(tree, kMoreNeighbors);
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(std::min(size, first + kChunk)); ++i) {
+      const Eigen::Vector3f& point = tree.points()[i];
+      shapes.shape[i] = shapeOf(tree, point, few.of(point));
+      radii[i] = few.radius();
+      if (shapes.shape[i].kind == ShapeKind::line) {
+        shapes.shape[i] = shapeOf(tree, point, more.of(point));
+      }
     }
   }
   shapes.spacing = spacingFrom(radii);

@@ -8,7 +8,8 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr int kLeafSize = 10;
+/// A leaf's points, whose distances are found together.
+constexpr int kLeafSize = 16;
 
 /// Whether \p a counts as nearer than \p b when both are equally near.
 bool precedes(const Eigen::Vector3f& a, const Eigen::Vector3f& b)
@@ -22,6 +23,9 @@ struct OneNearest {
   float limit;
   int index = -1;
 
+  /// All others that are as near lie at the same place.
+  [[nodiscard]] bool isOver() const { return limit == 0.0F && index >= 0; }
+
   void offer(float squared, int candidate)
   {
     if (squared < limit || (squared == limit && (index < 0 || precedes(points[static_cast<std::size_t>(candidate)],
@@ -32,35 +36,39 @@ struct OneNearest {
   }
 };
 
-/// Keeps the k nearest points, sorted.
+/// Keeps the k nearest points. Takes all within the limit, and throws out what is too far whenever there are twice as
+/// many as wanted: cheaper than keeping them sorted.
 struct SomeNearest {
   const std::vector<Eigen::Vector3f>& points;
   NearestPoints& result;
-  float limit = std::numeric_limits<float>::max();
+  int wanted;
+  float limit;
 
-  [[nodiscard]] bool nearer(float squared, int candidate, std::size_t than) const
-  {
-    return squared < result.squared_distance[than] ||
-           (squared == result.squared_distance[than] && precedes(points[static_cast<std::size_t>(candidate)],
-                                                                 points[static_cast<std::size_t>(result.index[than])]));
-  }
+  [[nodiscard]] bool isOver() const { return limit == 0.0F && result.count >= wanted; }
 
   void offer(float squared, int candidate)
   {
-    const bool full = result.count == result.wanted;
-    auto place = static_cast<std::size_t>(full ? result.count - 1 : result.count);
-    if (full && !nearer(squared, candidate, place)) {
+    result.neighbors[static_cast<std::size_t>(result.count++)] = {squared, candidate};
+    if (result.count == 2 * wanted) {
+      keepWanted();
+    }
+  }
+
+  void keepWanted()
+  {
+    const auto first = result.neighbors.begin();
+    const int kept = std::min(wanted, result.count);
+    if (kept < 1) {
       return;
     }
-    result.count += full ? 0 : 1;
-    for (; place > 0 && nearer(squared, candidate, place - 1); --place) {
-      result.squared_distance[place] = result.squared_distance[place - 1];
-      result.index[place] = result.index[place - 1];
-    }
-    result.squared_distance[place] = squared;
-    result.index[place] = candidate;
-    if (result.count == result.wanted) {
-      limit = result.squared_distance[static_cast<std::size_t>(result.wanted - 1)];
+    std::nth_element(first, first + kept - 1, first + result.count, [this](const auto& a, const auto& b) {
+      return a.squared_distance < b.squared_distance ||
+             (a.squared_distance == b.squared_distance &&
+              precedes(points[static_cast<std::size_t>(a.index)], points[static_cast<std::size_t>(b.index)]));
+    });
+    result.count = kept;
+    if (kept == wanted) {
+      limit = std::min(limit, (first + kept - 1)->squared_distance);
     }
   }
 };
@@ -75,9 +83,20 @@ PointTree::PointTree(const std::vector<Eigen::Vector3f>& points) : order_(points
   }
   nodes_.reserve(4 * points.size() / kLeafSize + 2);
   build(points, 0, static_cast<int>(points.size()));
+  layOut(points);
+}
+
+void PointTree::layOut(const std::vector<Eigen::Vector3f>& points)
+{
   points_.reserve(points.size());
-  for (const int i : order_) {
-    points_.push_back(points[static_cast<std::size_t>(i)]);
+  for (std::vector<float>& coordinates : coordinates_) {
+    coordinates.assign(points.size() + kLeafSize, 0.0F);
+  }
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    points_.push_back(points[static_cast<std::size_t>(order_[i])]);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      coordinates_[axis][i] = points_[i][static_cast<Eigen::Index>(axis)];
+    }
   }
 }
 
@@ -119,17 +138,36 @@ int PointTree::build(const std::vector<Eigen::Vector3f>& points, int first, int 
 }
 
 template <typename Collector>
+void PointTree::lookAt(const Node& leaf, const Eigen::Vector3f& query, Collector& collector) const
+{
+  // More than one block only where all points are equal.
+  for (int first = leaf.first_point; first < leaf.last_point && !collector.isOver(); first += kLeafSize) {
+    const float* x = coordinates_[0].data() + first;
+    const float* y = coordinates_[1].data() + first;
+    const float* z = coordinates_[2].data() + first;
+    std::array<float, kLeafSize> squared;
+    for (std::size_t i = 0; i < kLeafSize; ++i) {  // a whole block, for the sake of vector instructions
+      const float dx = x[i] - query.x();
+      const float dy = y[i] - query.y();
+      const float dz = z[i] - query.z();
+      squared[i] = dx * dx + (dy * dy + dz * dz);  // summed as Eigen does
+    }
+    const int count = std::min(kLeafSize, leaf.last_point - first);
+    for (int i = 0; i < count; ++i) {
+      if (squared[static_cast<std::size_t>(i)] <= collector.limit) {
+        collector.offer(squared[static_cast<std::size_t>(i)], first + i);
+      }
+    }
+  }
+}
+
+template <typename Collector>
 void PointTree::search(int number, const Eigen::Vector3f& query, float squared, Eigen::Vector3f& offset,
                        Collector& collector) const
 {
   const Node& node = nodes_[static_cast<std::size_t>(number)];
   if (node.axis < 0) {
-    for (int i = node.first_point; i < node.last_point; ++i) {
-      const float distance = (points_[static_cast<std::size_t>(i)] - query).squaredNorm();
-      if (distance <= collector.limit) {
-        collector.offer(distance, i);
-      }
-    }
+    lookAt(node, query, collector);
     return;
   }
   const float coordinate = query[node.axis];
@@ -139,7 +177,7 @@ void PointTree::search(int number, const Eigen::Vector3f& query, float squared, 
   const float gap = first_is_nearer ? std::max(0.0F, node.above - coordinate) : std::max(0.0F, coordinate - node.below);
   const float before = offset[node.axis];
   const float beyond = squared - before * before + gap * gap;
-  if (beyond <= collector.limit) {
+  if (beyond <= collector.limit && !collector.isOver()) {
     offset[node.axis] = gap;
     search(first_is_nearer ? node.second : number + 1, query, beyond, offset, collector);
     offset[node.axis] = before;
@@ -157,14 +195,14 @@ int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
   return collector.index;
 }
 
-void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result) const
+void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result, float limit) const
 {
-  result.wanted = k;
   result.count = 0;
   if (!empty()) {
-    SomeNearest collector{points_, result};
+    SomeNearest collector{points_, result, k, limit};
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();
     search(0, query, 0.0F, offset, collector);
+    collector.keepWanted();
   }
 }
 

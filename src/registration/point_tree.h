@@ -6,17 +6,22 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcl_floam {
 
-/// The nearest points of one query, nearest first. Fixed room: no allocation.
+/// The nearest points of one query, in no order but that the farthest comes last. Fixed room: no allocation.
 struct NearestPoints {
+  struct Neighbor {
+    float squared_distance;
+    int index;
+  };
+
   static constexpr int kCapacity = 40;
 
-  std::array<float, kCapacity> squared_distance;
-  std::array<int, kCapacity> index;
-  int wanted = 1;
+  /// Room beyond the capacity is for the search.
+  std::array<Neighbor, 2 * kCapacity> neighbors;
   int count = 0;
 };
 
@@ -45,7 +50,9 @@ public:
   [[nodiscard]] int nearest(const Eigen::Vector3f& query, float& limit) const;
 
   /// The up to \p k nearest points; \p k at most NearestPoints::kCapacity.
-  void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result) const;
+  /// \param limit squared distance within which \p k points are known to be: the less, the faster
+  void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result,
+               float limit = std::numeric_limits<float>::max()) const;
 
 private:
   struct Node {
@@ -58,11 +65,15 @@ private:
   };
 
   int build(const std::vector<Eigen::Vector3f>& points, int first, int last);
+  void layOut(const std::vector<Eigen::Vector3f>& points);
   template <typename Collector>
   void search(int node, const Eigen::Vector3f& query, float squared, Eigen::Vector3f& offset,
               Collector& collector) const;
+  template <typename Collector>
+  void lookAt(const Node& leaf, const Eigen::Vector3f& query, Collector& collector) const;
 
   std::vector<Eigen::Vector3f> points_;
+  std::array<std::vector<float>, 3> coordinates_;  ///< of the points, axis by axis, and some more for whole blocks
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };

@@ -7,7 +7,7 @@
 #include <pcl/registration/icp.h>
 #include <pcl/registration/ndt.h>
 
-#include <chrono>
+#include <ctime>
 #include <stdexcept>
 
 namespace pcl_floam::benchmark {
@@ -117,10 +117,10 @@ const std::vector<std::string>& methodNames()
 
 MethodResult runMethod(const std::string& method, const CloudPair& pair, const SE3& guess)
 {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();
   MethodResult result;
   result.target_T_source = run(method, pair, guess);
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   return result;
 }
 

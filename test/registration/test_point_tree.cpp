@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -33,6 +34,28 @@ std::vector<float> sortedDistances(const std::vector<Eigen::Vector3f>& points, c
   return distances;
 }
 
+std::vector<float> distancesOf(const NearestPoints& nearest)
+{
+  std::vector<float> distances;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
+    distances.push_back(nearest.neighbors[i].squared_distance);
+  }
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+/// The places of the neighbours, in an order that depends on them alone.
+std::vector<std::array<float, 3>> placesOf(const PointTree& tree, const NearestPoints& nearest)
+{
+  std::vector<std::array<float, 3>> places;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
+    const Eigen::Vector3f& point = tree.points()[static_cast<std::size_t>(nearest.neighbors[i].index)];
+    places.push_back({point.x(), point.y(), point.z()});
+  }
+  std::sort(places.begin(), places.end());
+  return places;
+}
+
 TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
 {
   for (const double flatness : {1.0, 0.0}) {
@@ -48,9 +71,11 @@ TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
       NearestPoints nearest;
       tree.nearest(query, 14, nearest);
       ASSERT_EQ(nearest.count, 14);
-      for (std::size_t i = 0; i < 14; ++i) {
-        EXPECT_EQ(nearest.squared_distance[i], expected[i]);
-      }
+      EXPECT_EQ(distancesOf(nearest), std::vector<float>(expected.begin(), expected.begin() + 14));
+      EXPECT_EQ(nearest.neighbors[13].squared_distance, expected[13]);
+      NearestPoints bounded;
+      tree.nearest(query, 14, bounded, expected[13]);
+      EXPECT_EQ(distancesOf(bounded), distancesOf(nearest));
     }
   }
 }
@@ -89,10 +114,7 @@ TEST(PointTree, TiesDoNotDependOnTheOrderOfThePoints)
     NearestPoints b;
     tree.nearest(query, 10, a);
     other.nearest(query, 10, b);
-    for (std::size_t i = 0; i < 10; ++i) {
-      EXPECT_EQ(tree.points()[static_cast<std::size_t>(a.index[i])],
-                other.points()[static_cast<std::size_t>(b.index[i])]);
-    }
+    EXPECT_EQ(placesOf(tree, a), placesOf(other, b));
   }
 }
 
@@ -101,6 +123,8 @@ TEST(PointTree, EqualPointsAndNoPoints)
   const PointTree equal(std::vector<Eigen::Vector3f>(100, Eigen::Vector3f(1.0F, 2.0F, 3.0F)));
   NearestPoints nearest;
   equal.nearest({0.0F, 0.0F, 0.0F}, 5, nearest);
+  EXPECT_EQ(nearest.count, 5);
+  equal.nearest({1.0F, 2.0F, 3.0F}, 5, nearest);
   EXPECT_EQ(nearest.count, 5);
   const PointTree none;
   float limit = 1.0F;
