@@ -152,14 +152,22 @@ CloudPair keyPointPair(unsigned scene, int points)
 }
 
 template <typename MakePair>
-PairKind makeKind(const std::string& name, const MakePair& make, int points, int grid_points)
+PairKind makeKind(const MakePair& make, unsigned seed, int points, int grid_points)
 {
+  const unsigned first = 10 * seed + 1;
   PairKind kind;
-  kind.name = name;
-  for (unsigned scene = 1; scene <= 3; ++scene) {
+  for (unsigned scene = first; scene < first + 3; ++scene) {
     kind.pairs.push_back(make(scene, points));
   }
-  kind.grid_pairs.push_back(make(4, grid_points));
+  kind.grid_pairs.push_back(make(first + 3, grid_points));
+  return kind;
+}
+
+/// One pair of so many points, for the time only.
+PairKind makeSize(unsigned seed, int points)
+{
+  PairKind kind;
+  kind.pairs.push_back(tablePair(10 * seed + 5, points));
   return kind;
 }
 
@@ -197,28 +205,37 @@ double disagreement(const Cloud& cloud, const SE3& a, const SE3& b)
   return std::sqrt(sum / static_cast<double>(cloud.size()));
 }
 
-std::vector<PairKind> makePairs(const std::string& data, const std::vector<std::string>& wanted)
+std::vector<PairKind> makePairs(const PairSelection& selection)
 {
-  const auto want = [&](const std::string& name) {
-    return wanted.empty() || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
-  };
+  const std::vector<std::string>& wanted = selection.kinds;
+  const unsigned seed = selection.seed;
   std::vector<PairKind> kinds;
   const auto add = [&](const std::string& name, const auto& make) {
-    if (want(name)) {
-      PairKind kind = make();
-      kind.name = name;
-      if (!kind.pairs.empty()) {
-        kinds.push_back(std::move(kind));
-      }
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), name) == wanted.end()) {
+      return;
+    }
+    PairKind kind = make();
+    kind.name = name;
+    if (selection.quick) {
+      kind.pairs.resize(std::min<std::size_t>(1, kind.pairs.size()));
+      kind.grid_pairs.clear();
+    }
+    if (!kind.pairs.empty()) {
+      kinds.push_back(std::move(kind));
     }
   };
-  add("indoor-scans", [] { return simulatedScans("room", "vlp16"); });
-  add("outdoor-scans", [] { return simulatedScans("urban", "hdl32"); });
-  add("real-scans", [&] { return realScans(data); });
-  add("table", [] { return makeKind("", tablePair, 29000, 6000); });
-  add("object", [] { return makeKind("", objectPair, 20000, 6000); });
-  add("key-points", [] { return makeKind("", keyPointPair, 300, 300); });
-  add("halves", [] { return makeKind("", halvesPair, 40000, 12000); });
+  add("indoor-scans", [&] { return simulatedScans("room", "vlp16", seed); });
+  add("outdoor-scans", [&] { return simulatedScans("urban", "hdl32", seed); });
+  add("real-scans", [&] { return realScans(selection.data, 4); });
+  add("table", [&] { return makeKind(tablePair, seed, 29000, 6000); });
+  add("object", [&] { return makeKind(objectPair, seed, 20000, 6000); });
+  add("key-points", [&] { return makeKind(keyPointPair, seed, 300, 300); });
+  add("halves", [&] { return makeKind(halvesPair, seed, 40000, 12000); });
+  add("small-scans", [&] { return realScans(selection.data, 24); });
+  add("table-5000", [&] { return makeSize(seed, 5000); });
+  if (!selection.quick) {
+    add("table-100000", [&] { return makeSize(seed, 100000); });
+  }
   return kinds;
 }
 

@@ -53,8 +53,15 @@ struct SceneSampling {
 /// Root mean square distance of where two transforms put a cloud's points.
 [[nodiscard]] double disagreement(const Cloud& cloud, const SE3& a, const SE3& b);
 
-/// All kinds that can be made on this machine.
-/// \param data folder of real data (KITTI raw 0001); left out if it is not there
-[[nodiscard]] std::vector<PairKind> makePairs(const std::string& data, const std::vector<std::string>& wanted);
+/// Which pairs to make.
+struct PairSelection {
+  std::vector<std::string> kinds;  ///< by name; empty: all
+  std::string data;                ///< folder of real data (KITTI raw 0001); these are left out if it is not there
+  unsigned seed = 0;               ///< other scenes and worlds for other seeds; the README's are those of 0
+  bool quick = false;              ///< one pair of each kind, no grid, nothing large
+};
+
+/// All kinds wanted that can be made on this machine.
+[[nodiscard]] std::vector<PairKind> makePairs(const PairSelection& selection);
 
 }  // namespace pcl_floam::benchmark

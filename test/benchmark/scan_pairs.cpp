@@ -48,7 +48,7 @@ Cloud::Ptr compensated(const simulator::Sweep& sweep, std::mt19937& random)
 }
 #endif
 
-Cloud::Ptr readKittiScan(const std::string& data, std::size_t number)
+Cloud::Ptr readKittiScan(const std::string& data, std::size_t number, std::size_t every)
 {
   std::ostringstream name;
   name << data << "/kitti_raw_0001/velodyne/" << std::setfill('0') << std::setw(10) << number << ".bin";
@@ -56,8 +56,8 @@ Cloud::Ptr readKittiScan(const std::string& data, std::size_t number)
   auto cloud = pcl::make_shared<Cloud>();
   float values[4];
   for (std::size_t i = 0; file.read(reinterpret_cast<char*>(values), sizeof(values)); ++i) {
-    if (i % 4 != 0) {
-      continue;  // for the sake of the slowest method
+    if (i % every != 0) {
+      continue;
     }
     Point point;
     point.getVector3fMap() = Eigen::Vector3f(values[0], values[1], values[2]);
@@ -79,16 +79,17 @@ void compensate(Cloud& cloud, const Vector6& motion)
 
 }  // namespace
 
-PairKind simulatedScans([[maybe_unused]] const std::string& world, [[maybe_unused]] const std::string& sensor)
+PairKind simulatedScans([[maybe_unused]] const std::string& world, [[maybe_unused]] const std::string& sensor,
+                        [[maybe_unused]] unsigned seed)
 {
   PairKind kind;
 #ifdef PCL_FLOAM_WITH_SIMULATOR
   simulator::SimulationOptions options;
   options.world = world;
   options.sensor = sensor;
-  options.seed = 7;
+  options.seed = 7 + seed;
   simulator::Simulation simulation(options);
-  std::mt19937 random(1);
+  std::mt19937 random(1 + seed);
   for (std::size_t first : {20U, 120U, 220U, 320U}) {
     const simulator::Sweep target = simulation.sweep(first);
     const simulator::Sweep source = simulation.sweep(first + 5);
@@ -100,7 +101,7 @@ PairKind simulatedScans([[maybe_unused]] const std::string& world, [[maybe_unuse
   return kind;
 }
 
-PairKind realScans(const std::string& data)
+PairKind realScans(const std::string& data, std::size_t every)
 {
   PairKind kind;
   const std::string poses_file = data + "/kitti_raw_0001/poses.txt";
@@ -110,7 +111,7 @@ PairKind realScans(const std::string& data)
   const Trajectory poses = readTrajectory(poses_file, TrajectoryFormat::kitti);
   for (const std::size_t number : {15U, 35U, 55U, 75U, 95U}) {
     const auto scan = [&](std::size_t n) {
-      auto cloud = readKittiScan(data, n);
+      auto cloud = readKittiScan(data, n, every);
       compensate(*cloud, Vector6(0.5 * log(poses[n - 1].world_T_sensor.inverse() * poses[n + 1].world_T_sensor)));
       return cloud;
     };
