@@ -29,18 +29,27 @@ constexpr std::size_t kFewPoints = 1000;
 LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
   LocalShape shape;
-  if (neighbors.count < 4) {
+  if (neighbors.count() < 4) {
     return shape;
   }
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(neighbors.count); ++i) {
-    const Eigen::Vector3d offset =
-        (tree.points()[static_cast<std::size_t>(neighbors.neighbors[i].index)] - point).cast<double>();
-    sum += offset;
-    squares += offset * offset.transpose();
+  // Sums of the offsets and of their products, by hand: half of a symmetric matrix is enough.
+  double x = 0.0, y = 0.0, z = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
+  for (int i = 0; i < neighbors.count(); ++i) {
+    const Eigen::Vector3d d = (tree.points()[static_cast<std::size_t>(neighbors.index(i))] - point).cast<double>();
+    x += d.x();
+    y += d.y();
+    z += d.z();
+    xx += d.x() * d.x();
+    xy += d.x() * d.y();
+    xz += d.x() * d.z();
+    yy += d.y() * d.y();
+    yz += d.y() * d.z();
+    zz += d.z() * d.z();
   }
-  const double count = neighbors.count;
+  const double count = neighbors.count();
+  const Eigen::Vector3d sum(x, y, z);
+  Eigen::Matrix3d squares;
+  squares << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(squares / count - sum * sum.transpose() / (count * count));
   const Eigen::Vector3d& eigenvalues = solver.eigenvalues();
@@ -87,14 +96,14 @@ public:
     const float bound = kRounding * (radius_ + (point - last_).norm());
     tree_.nearest(point, number_, nearest_, std::isfinite(bound) ? bound * bound : std::numeric_limits<float>::max());
     last_ = point;
-    radius_ = nearest_.count < number_ ? std::numeric_limits<float>::infinity() : radius();
+    radius_ = nearest_.count() < number_ ? std::numeric_limits<float>::infinity() : radius();
     return nearest_;
   }
 
   /// Distance of the farthest neighbour of the last point, m.
   [[nodiscard]] float radius() const
   {
-    return std::sqrt(nearest_.neighbors[static_cast<std::size_t>(nearest_.count - 1)].squared_distance);
+    return std::sqrt(nearest_.squaredDistance(nearest_.count() - 1));
   }
 
 private:

@@ -36,44 +36,53 @@ struct OneNearest {
   }
 };
 
-/// Keeps the k nearest points. Takes all within the limit, and throws out what is too far whenever there are twice as
-/// many as wanted: cheaper than keeping them sorted.
+}  // namespace
+
+/// Keeps the k nearest points. Takes all within the limit, and throws out what is too far whenever there are three
+/// times as many as wanted: cheaper than keeping them sorted.
 struct SomeNearest {
   const std::vector<Eigen::Vector3f>& points;
   NearestPoints& result;
   int wanted;
   float limit;
 
-  [[nodiscard]] bool isOver() const { return limit == 0.0F && result.count >= wanted; }
+  [[nodiscard]] bool isOver() const { return limit == 0.0F && result.count_ >= wanted; }
 
   void offer(float squared, int candidate)
   {
-    result.neighbors[static_cast<std::size_t>(result.count++)] = {squared, candidate};
-    if (result.count == 2 * wanted) {
+    result.keys_[static_cast<std::size_t>(result.count_++)] = NearestPoints::keyOf(squared, candidate);
+    if (result.count_ == 3 * wanted) {
       keepWanted();
     }
   }
 
   void keepWanted()
   {
-    const auto first = result.neighbors.begin();
-    const int kept = std::min(wanted, result.count);
-    if (kept < 1) {
+    if (result.count_ == 0 || wanted < 1) {
       return;
     }
-    std::nth_element(first, first + kept - 1, first + result.count, [this](const auto& a, const auto& b) {
-      return a.squared_distance < b.squared_distance ||
-             (a.squared_distance == b.squared_distance &&
-              precedes(points[static_cast<std::size_t>(a.index)], points[static_cast<std::size_t>(b.index)]));
-    });
-    result.count = kept;
+    const int kept = std::min(wanted, result.count_);
+    const auto first = result.keys_.begin();
+    const auto farthest = first + kept - 1;
+    const auto last = first + result.count_;
+    std::nth_element(first, farthest, last);
+    const std::uint64_t distance = *farthest >> 32U;
+    if (std::any_of(farthest + 1, last, [&](std::uint64_t key) { return key >> 32U == distance; })) {
+      std::nth_element(first, farthest, last, [this](std::uint64_t a, std::uint64_t b) { return isNearer(a, b); });
+    }
+    result.count_ = kept;
     if (kept == wanted) {
-      limit = std::min(limit, (first + kept - 1)->squared_distance);
+      limit = std::min(limit, result.squaredDistance(kept - 1));
     }
   }
-};
 
-}  // namespace
+  /// The points' places decide between those that are equally near.
+  [[nodiscard]] bool isNearer(std::uint64_t a, std::uint64_t b) const
+  {
+    const auto placeOf = [this](std::uint64_t key) -> const Eigen::Vector3f& { return points[key & 0xFFFFFFFFU]; };
+    return a >> 32U != b >> 32U ? a < b : precedes(placeOf(a), placeOf(b));
+  }
+};
 
 PointTree::PointTree(const std::vector<Eigen::Vector3f>& points) : order_(points.size())
 {
@@ -197,7 +206,7 @@ int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
 
 void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result, float limit) const
 {
-  result.count = 0;
+  result.count_ = 0;
   if (!empty()) {
     SomeNearest collector{points_, result, k, limit};
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();

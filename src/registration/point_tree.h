@@ -6,23 +6,44 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
 namespace pcl_floam {
 
 /// The nearest points of one query, in no order but that the farthest comes last. Fixed room: no allocation.
-struct NearestPoints {
-  struct Neighbor {
-    float squared_distance;
-    int index;
-  };
-
+class NearestPoints {
+public:
   static constexpr int kCapacity = 40;
 
-  /// Room beyond the capacity is for the search.
-  std::array<Neighbor, 2 * kCapacity> neighbors;
-  int count = 0;
+  [[nodiscard]] int count() const { return count_; }
+  [[nodiscard]] int index(int i) const { return static_cast<int>(keys_[static_cast<std::size_t>(i)] & 0xFFFFFFFFU); }
+  [[nodiscard]] float squaredDistance(int i) const
+  {
+    const auto bits = static_cast<std::uint32_t>(keys_[static_cast<std::size_t>(i)] >> 32U);
+    float squared;
+    std::memcpy(&squared, &bits, sizeof(squared));
+    return squared;
+  }
+
+private:
+  friend class PointTree;
+  friend struct SomeNearest;
+
+  /// A squared distance's bits above an index. As it is not negative, its bits are in its order, and comparing one
+  /// number is all that selecting needs.
+  static std::uint64_t keyOf(float squared, int index)
+  {
+    std::uint32_t bits;
+    std::memcpy(&bits, &squared, sizeof(bits));
+    return static_cast<std::uint64_t>(bits) << 32U | static_cast<std::uint32_t>(index);
+  }
+
+  static constexpr std::size_t kRoom = 3 * kCapacity;  ///< what the search needs beyond the capacity
+  std::array<std::uint64_t, kRoom> keys_;
+  int count_ = 0;
 };
 
 /// A balanced KD-tree in single precision.

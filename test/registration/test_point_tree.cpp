@@ -37,8 +37,8 @@ std::vector<float> sortedDistances(const std::vector<Eigen::Vector3f>& points, c
 std::vector<float> distancesOf(const NearestPoints& nearest)
 {
   std::vector<float> distances;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
-    distances.push_back(nearest.neighbors[i].squared_distance);
+  for (int i = 0; i < nearest.count(); ++i) {
+    distances.push_back(nearest.squaredDistance(i));
   }
   std::sort(distances.begin(), distances.end());
   return distances;
@@ -48,8 +48,8 @@ std::vector<float> distancesOf(const NearestPoints& nearest)
 std::vector<std::array<float, 3>> placesOf(const PointTree& tree, const NearestPoints& nearest)
 {
   std::vector<std::array<float, 3>> places;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(nearest.count); ++i) {
-    const Eigen::Vector3f& point = tree.points()[static_cast<std::size_t>(nearest.neighbors[i].index)];
+  for (int i = 0; i < nearest.count(); ++i) {
+    const Eigen::Vector3f& point = tree.points()[static_cast<std::size_t>(nearest.index(i))];
     places.push_back({point.x(), point.y(), point.z()});
   }
   std::sort(places.begin(), places.end());
@@ -70,9 +70,9 @@ TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
       EXPECT_EQ((tree.points()[static_cast<std::size_t>(found)] - query).squaredNorm(), expected[0]);
       NearestPoints nearest;
       tree.nearest(query, 14, nearest);
-      ASSERT_EQ(nearest.count, 14);
+      ASSERT_EQ(nearest.count(), 14);
       EXPECT_EQ(distancesOf(nearest), std::vector<float>(expected.begin(), expected.begin() + 14));
-      EXPECT_EQ(nearest.neighbors[13].squared_distance, expected[13]);
+      EXPECT_EQ(nearest.squaredDistance(13), expected[13]);
       NearestPoints bounded;
       tree.nearest(query, 14, bounded, expected[13]);
       EXPECT_EQ(distancesOf(bounded), distancesOf(nearest));
@@ -123,14 +123,14 @@ TEST(PointTree, EqualPointsAndNoPoints)
   const PointTree equal(std::vector<Eigen::Vector3f>(100, Eigen::Vector3f(1.0F, 2.0F, 3.0F)));
   NearestPoints nearest;
   equal.nearest({0.0F, 0.0F, 0.0F}, 5, nearest);
-  EXPECT_EQ(nearest.count, 5);
+  EXPECT_EQ(nearest.count(), 5);
   equal.nearest({1.0F, 2.0F, 3.0F}, 5, nearest);
-  EXPECT_EQ(nearest.count, 5);
+  EXPECT_EQ(nearest.count(), 5);
   const PointTree none;
   float limit = 1.0F;
   EXPECT_EQ(none.nearest({0.0F, 0.0F, 0.0F}, limit), -1);
   none.nearest({0.0F, 0.0F, 0.0F}, 5, nearest);
-  EXPECT_EQ(nearest.count, 0);
+  EXPECT_EQ(nearest.count(), 0);
 }
 
 }  // namespace
