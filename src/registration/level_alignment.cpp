@@ -59,7 +59,7 @@ LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& targe
       robust_(robust),
       spacing_(std::max(source.spacing, target.spacing)),
       gate_(run.max_distance),
-      nearest_(source.tree.size(), -1),
+      last_searches_(source.tree.size()),
       match_(source.tree.size(), -1),
       squared_distance_(source.tree.size(), 0.0F),
       residuals_(source.tree.size())
@@ -74,20 +74,36 @@ void LevelAlignment::searchNearest(const SE3& pose)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
     const auto i = static_cast<std::size_t>(n);
     const Eigen::Vector3f query = (pose * source_.tree.points()[i].cast<double>()).cast<float>();
-    float limit = bound;
-    if (nearest_[i] >= 0) {
-      // The point that was nearest bounds the search: nothing farther can be nearest now.
-      constexpr float kRounding = 1.0001F;
-      const float known = (target_.tree.points()[static_cast<std::size_t>(nearest_[i])] - query).squaredNorm();
-      limit = std::min(limit, known * kRounding);
-    }
-    const int found = target_.tree.nearest(query, limit);
-    match_[i] = found;
-    squared_distance_[i] = limit;
-    if (found >= 0) {
-      nearest_[i] = found;
-    }
+    searchNearest(i, query, bound);
   }
+}
+
+void LevelAlignment::searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound)
+{
+  constexpr float kRounding = 1.001F;
+  LastSearch& last = last_searches_[i];
+  float limit = bound;
+  float known = std::numeric_limits<float>::max();
+  if (last.nearest >= 0) {
+    known = (target_.tree.points()[static_cast<std::size_t>(last.nearest)] - query).squaredNorm();
+    // The point that was nearest bounds the search: nothing farther can be nearest now.
+    limit = std::min(limit, known * kRounding);
+  }
+  // All others are still at least so far off: if that is enough, there is nothing to search.
+  const float others = last.clear / kRounding - kRounding * (query - last.place).norm();
+  if (others > 0.0F && others * others > (last.found ? known : bound) * kRounding) {
+    match_[i] = last.found && known <= bound ? last.nearest : -1;
+    squared_distance_[i] = known;
+    return;
+  }
+  float clear = 0.0F;
+  const int found = target_.tree.nearest(query, limit, clear);
+  match_[i] = found;
+  squared_distance_[i] = limit;
+  last.place = query;
+  last.clear = std::sqrt(clear);
+  last.found = found >= 0;
+  last.nearest = last.found ? found : last.nearest;
 }
 
 void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)

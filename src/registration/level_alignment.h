@@ -64,6 +64,15 @@ private:
     float squared;                 ///< difference^T M difference, m^2; negative without a match
   };
 
+  /// What the last search for a source point's nearest target point came to. While the point moves little, it tells the
+  /// outcome of the next one, and else bounds it.
+  struct LastSearch {
+    Eigen::Vector3f place = Eigen::Vector3f::Zero();  ///< where the source point was
+    float clear = 0.0F;                               ///< m; no other target point was nearer than this
+    int nearest = -1;                                 ///< the last one found
+    bool found = false;                               ///< by that search
+  };
+
   template <typename ToFrames>
   void findMatches(const SE3& pose, const ToFrames& to_frames)
   {
@@ -79,6 +88,7 @@ private:
   }
   void askUsersSearch(const SE3& pose, const SE3& target_T_source);
   void searchNearest(const SE3& pose);
+  void searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound);
   void keepReciprocal(const SE3& pose);
   void narrow();
   void listMatches();
@@ -95,11 +105,11 @@ private:
   double along_;
   bool robust_;
   double spacing_;
-  double gate_;               ///< m; pairs farther apart are no matches
-  double scale_ = 0.0;        ///< of the robust kernel, m
-  std::vector<int> nearest_;  ///< per source point, the last iteration's nearest target point: a bound for the next
-  std::vector<int> match_;    ///< per source point, the target point, or -1
-  std::vector<float> squared_distance_;  ///< of the match
+  double gate_;                            ///< m; pairs farther apart are no matches
+  double scale_ = 0.0;                     ///< of the robust kernel, m
+  std::vector<LastSearch> last_searches_;  ///< per source point
+  std::vector<int> match_;                 ///< per source point, the target point, or -1
+  std::vector<float> squared_distance_;    ///< of the match
   std::vector<PointMatch> matches_;
   std::vector<Residual> residuals_;
 };

@@ -17,23 +17,33 @@ bool precedes(const Eigen::Vector3f& a, const Eigen::Vector3f& b)
   return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
 }
 
-/// Keeps the one nearest point.
+/// Keeps the one nearest point, and how far off all others are at least.
 struct OneNearest {
   const std::vector<Eigen::Vector3f>& points;
   float limit;
   int index = -1;
+  float clear = std::numeric_limits<float>::max();
 
   /// All others that are as near lie at the same place.
   [[nodiscard]] bool isOver() const { return limit == 0.0F && index >= 0; }
 
   void offer(float squared, int candidate)
   {
-    if (squared < limit || (squared == limit && (index < 0 || precedes(points[static_cast<std::size_t>(candidate)],
-                                                                       points[static_cast<std::size_t>(index)])))) {
-      limit = squared;
-      index = candidate;
+    if (index >= 0 && squared == limit && !precedes(at(candidate), at(index))) {
+      passOver(squared);
+      return;
     }
+    if (index >= 0) {
+      passOver(limit);
+    }
+    limit = squared;
+    index = candidate;
   }
+
+  /// Something at least so far off is not looked at.
+  void passOver(float squared) { clear = std::min(clear, squared); }
+
+  [[nodiscard]] const Eigen::Vector3f& at(int i) const { return points[static_cast<std::size_t>(i)]; }
 };
 
 }  // namespace
@@ -55,6 +65,8 @@ struct SomeNearest {
       keepWanted();
     }
   }
+
+  void passOver(float /*squared*/) {}
 
   void keepWanted()
   {
@@ -165,6 +177,8 @@ void PointTree::lookAt(const Node& leaf, const Eigen::Vector3f& query, Collector
     for (int i = 0; i < count; ++i) {
       if (squared[static_cast<std::size_t>(i)] <= collector.limit) {
         collector.offer(squared[static_cast<std::size_t>(i)], first + i);
+      } else {
+        collector.passOver(squared[static_cast<std::size_t>(i)]);
       }
     }
   }
@@ -190,10 +204,12 @@ void PointTree::search(int number, const Eigen::Vector3f& query, float squared, 
     offset[node.axis] = gap;
     search(first_is_nearer ? node.second : number + 1, query, beyond, offset, collector);
     offset[node.axis] = before;
+  } else {
+    collector.passOver(beyond);
   }
 }
 
-int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
+int PointTree::nearest(const Eigen::Vector3f& query, float& limit, float& clear) const
 {
   OneNearest collector{points_, limit};
   if (!empty()) {
@@ -201,7 +217,14 @@ int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
     search(0, query, 0.0F, offset, collector);
     limit = collector.limit;
   }
+  clear = collector.clear;
   return collector.index;
+}
+
+int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
+{
+  float clear = 0.0F;
+  return nearest(query, limit, clear);
 }
 
 void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result, float limit) const

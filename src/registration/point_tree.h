@@ -70,6 +70,9 @@ public:
   /// The nearest point no farther than \p limit (squared), -1 if there is none. \p limit becomes its squared distance.
   [[nodiscard]] int nearest(const Eigen::Vector3f& query, float& limit) const;
 
+  /// \param[out] clear squared distance below which there is no point but the one found
+  [[nodiscard]] int nearest(const Eigen::Vector3f& query, float& limit, float& clear) const;
+
   /// The up to \p k nearest points; \p k at most NearestPoints::kCapacity.
   /// \param limit squared distance within which \p k points are known to be: the less, the faster
   void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result,

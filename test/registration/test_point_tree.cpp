@@ -80,6 +80,28 @@ TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
   }
 }
 
+TEST(PointTree, NoOtherPointIsWithinTheClearDistance)
+{
+  const auto points = randomPoints(4, 2000, 0.3);
+  const PointTree tree(points);
+  double share = 0.0;
+  for (const Eigen::Vector3f& query : randomPoints(5, 300, 0.5)) {
+    const std::vector<float> expected = sortedDistances(points, query);
+    float limit = std::numeric_limits<float>::max();
+    float clear = 0.0F;
+    ASSERT_GE(tree.nearest(query, limit, clear), 0);
+    EXPECT_LE(clear, expected[1]);
+    EXPECT_GE(clear, expected[0]);
+    share += static_cast<double>((clear - expected[0]) / (expected[1] - expected[0])) / 300.0;
+
+    limit = 0.9F * expected[0];
+    EXPECT_EQ(tree.nearest(query, limit, clear), -1);
+    EXPECT_LE(clear, expected[0]);
+    EXPECT_GE(clear, 0.9F * expected[0]);
+  }
+  EXPECT_GT(share, 0.3);  // of what there is to gain
+}
+
 TEST(PointTree, TheLimitIsIncluded)
 {
   const PointTree tree({{1.0F, 0.0F, 0.0F}});
