@@ -32,5 +32,6 @@ if(PCL_FLOAM_WARNINGS_AS_ERRORS)
   set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
 endif()
 
-doxygen_add_docs(doc include/pcl_floam cmake/main_page.dox WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+doxygen_add_docs(doc include/pcl_floam cmake/main_page.dox cmake/doc/tuning.md cmake/doc/adding_a_sensor.md
+                 cmake/doc/adding_a_residual.md WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
                  COMMENT "API documentation in doc/html")
