@@ -142,7 +142,8 @@ private:
   [[nodiscard]] bool isEdge(int n) const
   {
     return sharpness(n) > 0.0F &&
-           sharpness(n) > parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+           sharpness(n) >
+               parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.
