@@ -101,10 +101,7 @@ public:
   }
 
   /// Distance of the farthest neighbour of the last point, m.
-  [[nodiscard]] float radius() const
-  {
-    return std::sqrt(nearest_.squaredDistance(nearest_.count() - 1));
-  }
+  [[nodiscard]] float radius() const { return std::sqrt(nearest_.squaredDistance(nearest_.count() - 1)); }
 
 private:
   const PointTree& tree_;
