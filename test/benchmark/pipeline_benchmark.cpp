@@ -63,9 +63,10 @@ void runPipeline(const ScanSequence& sequence, int threads, ::benchmark::State& 
 void registerPipeline(const ScanSequence& sequence, int threads)
 {
   const std::string name = "pipeline/" + sequence.name + "/" + std::to_string(threads) + " threads";
-  ::benchmark::RegisterBenchmark(name.c_str(), [sequence, threads](::benchmark::State& state) {
-    runPipeline(sequence, threads, state);
-  })->Unit(::benchmark::kMillisecond)->Iterations(1);
+  ::benchmark::RegisterBenchmark(
+      name.c_str(), [sequence, threads](::benchmark::State& state) { runPipeline(sequence, threads, state); })
+      ->Unit(::benchmark::kMillisecond)
+      ->Iterations(1);
 }
 
 }  // namespace pcl_floam::benchmark

@@ -10,10 +10,9 @@ int main(int argc, char** argv)
   using namespace pcl_floam::benchmark;
   const char* data = std::getenv("PCL_FLOAM_DATA");
   constexpr std::size_t kScans = 100;
-  const ScanSequence sequences[] = {realDrive(data != nullptr ? data : PCL_FLOAM_DEFAULT_DATA),
-                                    simulatedSequence("urban", "hdl64", kScans),
-                                    simulatedSequence("warehouse", "vlp16", kScans),
-                                    simulatedSequence("urban", "os128", kScans)};
+  const ScanSequence sequences[] = {
+      realDrive(data != nullptr ? data : PCL_FLOAM_DEFAULT_DATA), simulatedSequence("urban", "hdl64", kScans),
+      simulatedSequence("warehouse", "vlp16", kScans), simulatedSequence("urban", "os128", kScans)};
   const ScanSequence* longest = nullptr;
   for (const ScanSequence& sequence : sequences) {
     if (sequence.scans.empty()) {
