@@ -35,6 +35,9 @@ target_compile_options(pcl_floam_build_flags INTERFACE
 if(PCL_FLOAM_SANITIZER)
   target_compile_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER} -fno-omit-frame-pointer)
   target_link_options(pcl_floam_build_flags INTERFACE -fsanitize=${PCL_FLOAM_SANITIZER})
+  # Under the address sanitizer Eigen pads each allocation by itself, PCL's own libraries were built without it, and
+  # what one allocates the other frees.
+  target_compile_definitions(pcl_floam_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endif()
 if(PCL_FLOAM_FUZZ)
   target_compile_options(pcl_floam_build_flags INTERFACE -fno-sanitize-recover=all)
@@ -43,5 +46,6 @@ endif()
 # For libraries: the same flags without linking to the target, which an exported library must not mention.
 function(pcl_floam_use_build_flags target)
   target_compile_options(${target} PRIVATE $<TARGET_PROPERTY:pcl_floam_build_flags,INTERFACE_COMPILE_OPTIONS>)
+  target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:pcl_floam_build_flags,INTERFACE_COMPILE_DEFINITIONS>)
   target_link_options(${target} PRIVATE $<TARGET_PROPERTY:pcl_floam_build_flags,INTERFACE_LINK_OPTIONS>)
 endfunction()

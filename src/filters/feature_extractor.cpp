@@ -1,80 +1,54 @@
 #include <pcl_floam/filters/feature_extractor.h>
 
+#include "common/multi_version.h"
 #include "common/parameter_check.h"
 #include "filters/line_points.h"
+#include "filters/selectability.h"
 #include "filters/smoothness.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstring>
+#include <limits>
 
 namespace pcl_floam {
 
 namespace {
 
-/// Why a point of a line cannot be a feature; bits.
-enum Unfit : std::uint8_t {
-  kFit = 0,
-  kOutOfRange = 1,
-  kOccluded = 2,  // beside a nearer surface: its neighbourhood changes with the viewpoint
-  kGrazing = 4,   // on a surface seen almost edge on
-  kNotAsked = 8,  // the caller wants no feature there
-  kTaken = 16     // part of an edge's neighbourhood
-};
-
-/// A depth step hides surface when it is larger than this part of the range.
-constexpr float kDepthStep = 0.05F;
-/// Points further apart than this, in rad, have no surface between them that one could hide from the other.
-constexpr float kAdjacent = 0.05F;
-/// Spacing to both neighbours, as a part of the range, from which incidence is called grazing (LOAM's value).
-constexpr float kGrazingSpacing = 0.0141F;
+constexpr float kNeverFlat = std::numeric_limits<float>::infinity();
 
 /// Scratch memory for one scan line after another.
 struct LineScratch {
   LinePoints points;
   std::vector<float> sigma;
-  std::vector<std::uint8_t> unfit;
+  std::vector<std::int32_t> unfit;
+  std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
+  std::vector<float> flatness;   ///< sigma of the points that may be planes, infinity elsewhere
   std::vector<int> candidates;
 };
 
-/// Marks the \p half_window points on the far side of each depth step.
-void markOccluded(const LinePoints& line, int half_window, std::vector<std::uint8_t>& unfit)
+/// Sorts a line's points into those sharp enough for edges and those smooth enough for planes.
+PCL_FLOAM_MULTI_VERSION
+void rate(std::size_t count, const float* sigma, const std::int32_t* unfit, float edge_threshold, float plane_threshold,
+          float* sharpness, float* flatness)
 {
-  for (int n = 0; n + 1 < line.size(); ++n) {
-    const auto a = static_cast<std::size_t>(n);
-    const float step = line.range[a + 1] - line.range[a];
-    const float nearer = std::min(line.range[a], line.range[a + 1]);
-    if (std::abs(step) < kDepthStep * nearer) {
-      continue;
-    }
-    const float lateral2 = line.squared_step[a] - step * step;
-    if (lateral2 > kAdjacent * kAdjacent * nearer * nearer) {
-      continue;
-    }
-    const int first = step > 0.0F ? n + 1 : std::max(0, n - half_window + 1);
-    const int last = step > 0.0F ? std::min(line.size() - 1, n + half_window) : n;
-    for (int k = first; k <= last; ++k) {
-      unfit[static_cast<std::size_t>(k)] |= kOccluded;
-    }
+  for (std::size_t n = 0; n < count; ++n) {
+    const bool fit = unfit[n] == 0;
+    sharpness[n] = fit & (sigma[n] > edge_threshold) ? sigma[n] : 0.0F;
+    flatness[n] = fit & (sigma[n] < plane_threshold) ? sigma[n] : kNeverFlat;
   }
 }
 
-void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::uint8_t>& unfit)
+/// The first place of the least of some numbers that are not negative.
+int placeOfLeast(const std::vector<float>& numbers, int first, int last)
 {
-  const std::size_t size = line.x.size();
-  unfit.resize(size);
-  const float* range = line.range.data();
-  const float* squared_step = line.squared_step.data();
-  // No branches: these two loops go over every point of the scan.
-  for (std::size_t n = 0; n < size; ++n) {
-    const bool out_of_range = (range[n] < parameters.min_range) | (range[n] > parameters.max_range);
-    unfit[n] = static_cast<std::uint8_t>(out_of_range * kOutOfRange);
+  // Bits of such floats rise with their values: number and place together are compared at once, without a branch.
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (int n = first; n < last; ++n) {
+    std::uint32_t bits;
+    std::memcpy(&bits, &numbers[static_cast<std::size_t>(n)], sizeof(bits));
+    least = std::min(least, static_cast<std::uint64_t>(bits) << 32 | static_cast<std::uint32_t>(n));
   }
-  for (std::size_t n = 1; n + 1 < size; ++n) {
-    const float limit = kGrazingSpacing * range[n];
-    const bool grazing = (squared_step[n - 1] > limit * limit) & (squared_step[n] > limit * limit);
-    unfit[n] = static_cast<std::uint8_t>(unfit[n] | (grazing * kGrazing));
-  }
-  markOccluded(line, parameters.neighbors_each_side, unfit);
+  return static_cast<int>(static_cast<std::uint32_t>(least));
 }
 
 /// Collects the features of one scan line.
@@ -103,6 +77,10 @@ public:
     computeSmoothness(line_.points, parameters_.neighbors_each_side, parameters_.smoothness, line_.sigma);
     markUnfit(line_.points, parameters_, line_.unfit);
     markNotAsked();
+    line_.sharpness.resize(line_.sigma.size());
+    line_.flatness.resize(line_.sigma.size());
+    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), parameters_.edge_threshold,
+         parameters_.plane_threshold, line_.sharpness.data(), line_.flatness.data());
 
     const int begin = parameters_.neighbors_each_side;
     const int length = line_.points.size() - 2 * begin;
@@ -119,7 +97,7 @@ private:
   {
     for (std::size_t n = 0; !selectable_.empty() && n < line_.unfit.size(); ++n) {
       if (selectable_[static_cast<std::size_t>(lines_.index[first_index_ + n])] == 0) {
-        line_.unfit[n] |= kNotAsked;
+        line_.unfit[n] = 1;
       }
     }
   }
@@ -127,25 +105,44 @@ private:
   /// The points of highest smoothness, at least a neighbourhood apart.
   void selectEdges(int first, int last)
   {
+    findEdgeCandidates(first, last);
+    for (int taken = 0; taken < parameters_.edges_per_sector; ++taken) {
+      int sharpest = -1;
+      for (const int n : line_.candidates) {
+        if (sharpness(n) > (sharpest < 0 ? 0.0F : sharpness(sharpest))) {
+          sharpest = n;
+        }
+      }
+      if (sharpest < 0) {
+        return;
+      }
+      features_.edges.push_back(makeFeature(sharpest));
+      takeNeighborhood(sharpest);
+    }
+  }
+
+  void findEdgeCandidates(int first, int last)
+  {
+    constexpr int kStretch = 16;  // most have none
     line_.candidates.clear();
-    for (int n = first; n < last; ++n) {
-      if (isEdge(n)) {
-        line_.candidates.push_back(n);
+    for (int begin = first; begin < last; begin += kStretch) {
+      const int end = std::min(last, begin + kStretch);
+      float sum = 0.0F;
+      for (int n = begin; n < end; ++n) {
+        sum += sharpness(n);
+      }
+      for (int n = begin; n < end && sum > 0.0F; ++n) {
+        if (isEdge(n)) {
+          line_.candidates.push_back(n);
+        }
       }
     }
-    const auto sharper = [this](int a, int b) { return sigma(a) != sigma(b) ? sigma(a) > sigma(b) : a < b; };
-    std::sort(line_.candidates.begin(), line_.candidates.end(), sharper);
-    int taken = 0;
-    for (const int n : line_.candidates) {
-      if (taken == parameters_.edges_per_sector) {
-        break;
-      }
-      if ((line_.unfit[static_cast<std::size_t>(n)] & kTaken) == 0) {
-        features_.edges.push_back(makeFeature(n));
-        takeNeighborhood(n);
-        ++taken;
-      }
-    }
+  }
+
+  [[nodiscard]] bool isEdge(int n) const
+  {
+    return sharpness(n) > 0.0F &&
+           sharpness(n) > parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.
@@ -155,31 +152,24 @@ private:
     for (int cell = 0; cell < cells; ++cell) {
       const int from = first + (last - first) * cell / cells;
       const int to = first + (last - first) * (cell + 1) / cells;
-      int best = -1;
-      for (int n = from; n < to; ++n) {
-        if (line_.unfit[static_cast<std::size_t>(n)] == kFit && sigma(n) < parameters_.plane_threshold &&
-            (best < 0 || sigma(n) < sigma(best))) {
-          best = n;
-        }
+      if (from == to) {
+        continue;
       }
-      if (best >= 0) {
-        features_.planes.push_back(makeFeature(best));
+      const int smoothest = placeOfLeast(line_.flatness, from, to);
+      if (line_.flatness[static_cast<std::size_t>(smoothest)] < kNeverFlat) {
+        features_.planes.push_back(makeFeature(smoothest));
       }
     }
   }
 
-  [[nodiscard]] bool isEdge(int n) const
-  {
-    return sigma(n) > parameters_.edge_threshold && line_.unfit[static_cast<std::size_t>(n)] == kFit &&
-           sigma(n) > parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
-  }
-
+  /// What is part of an edge's neighbourhood is neither another edge nor a plane.
   void takeNeighborhood(int n)
   {
     const int first = std::max(0, n - parameters_.neighbors_each_side);
     const int last = std::min(line_.points.size() - 1, n + parameters_.neighbors_each_side);
     for (int k = first; k <= last; ++k) {
-      line_.unfit[static_cast<std::size_t>(k)] |= kTaken;
+      line_.sharpness[static_cast<std::size_t>(k)] = 0.0F;
+      line_.flatness[static_cast<std::size_t>(k)] = kNeverFlat;
     }
   }
 
@@ -196,7 +186,7 @@ private:
     return feature;
   }
 
-  [[nodiscard]] float sigma(int n) const { return line_.sigma[static_cast<std::size_t>(n)]; }
+  [[nodiscard]] float sharpness(int n) const { return line_.sharpness[static_cast<std::size_t>(n)]; }
 
   const CloudView& cloud_;
   const ScanLines& lines_;

@@ -1,5 +1,9 @@
 #include "filters/smoothness.h"
 
+#include "common/multi_version.h"
+
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -7,24 +11,41 @@ namespace pcl_floam {
 
 namespace {
 
-/// Norm of the mean difference to the neighbours: zero where the neighbourhood is symmetric, as on a line.
-void vectorSum(const LinePoints& line, int half_window, float* sigma)
+/// Points taken at a time: their sums stay in the first cache.
+constexpr std::size_t kBatch = 512;
+
+/// Sum of one coordinate's differences to the neighbours on both sides.
+inline void differenceSums(std::size_t count, std::size_t half_window, const float* x, float* sum)
 {
-  const int end = line.size() - half_window;
-  const float neighbors = 2.0F * static_cast<float>(half_window);
-  const float* x = line.x.data();
-  const float* y = line.y.data();
-  const float* z = line.z.data();
-  for (int n = half_window; n < end; ++n) {
-    float sum_x = -neighbors * x[n];
-    float sum_y = -neighbors * y[n];
-    float sum_z = -neighbors * z[n];
-    for (int j = 1; j <= half_window; ++j) {
-      sum_x += x[n - j] + x[n + j];
-      sum_y += y[n - j] + y[n + j];
-      sum_z += z[n - j] + z[n + j];
+  for (std::size_t n = 0; n < count; ++n) {
+    sum[n] = -2.0F * static_cast<float>(half_window) * x[n];
+  }
+  for (std::size_t j = 1; j <= half_window; ++j) {
+    const float* before = x - j;
+    const float* after = x + j;
+    for (std::size_t n = 0; n < count; ++n) {
+      sum[n] += before[n] + after[n];
     }
-    sigma[n] = std::sqrt(sum_x * sum_x + sum_y * sum_y + sum_z * sum_z) / neighbors;
+  }
+}
+
+/// Norm of the mean difference to the neighbours: zero where the neighbourhood is symmetric, as on a line.
+PCL_FLOAM_MULTI_VERSION
+void vectorSum(std::size_t begin, std::size_t end, std::size_t half_window, const float* x, const float* y,
+               const float* z, float* sigma)
+{
+  std::array<float, kBatch> sum_x;
+  std::array<float, kBatch> sum_y;
+  std::array<float, kBatch> sum_z;
+  const float part = 0.5F / static_cast<float>(half_window);
+  for (std::size_t first = begin; first < end; first += kBatch) {
+    const std::size_t count = std::min(kBatch, end - first);
+    differenceSums(count, half_window, x + first, sum_x.data());
+    differenceSums(count, half_window, y + first, sum_y.data());
+    differenceSums(count, half_window, z + first, sum_z.data());
+    for (std::size_t n = 0; n < count; ++n) {
+      sigma[first + n] = part * std::sqrt(sum_x[n] * sum_x[n] + sum_y[n] * sum_y[n] + sum_z[n] * sum_z[n]);
+    }
   }
 }
 
@@ -46,9 +67,17 @@ float meanNeighborDistance(const LinePoints& line, int n, int half_window)
 
 void computeSmoothness(const LinePoints& line, int half_window, SmoothnessKind kind, std::vector<float>& sigma)
 {
-  sigma.assign(line.x.size(), std::numeric_limits<float>::quiet_NaN());
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  const auto ends = static_cast<std::size_t>(half_window);
+  sigma.resize(line.x.size());
+  if (sigma.size() <= 2 * ends) {
+    std::fill(sigma.begin(), sigma.end(), kUnknown);
+    return;
+  }
+  std::fill_n(sigma.begin(), ends, kUnknown);
+  std::fill_n(sigma.rbegin(), ends, kUnknown);
   if (kind == SmoothnessKind::vector_sum) {
-    vectorSum(line, half_window, sigma.data());
+    vectorSum(ends, sigma.size() - ends, ends, line.x.data(), line.y.data(), line.z.data(), sigma.data());
     return;
   }
   for (int n = half_window; n < line.size() - half_window; ++n) {

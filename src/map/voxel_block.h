@@ -2,6 +2,8 @@
 /// The points of one block of voxels, laid out for the nearest-neighbour search.
 #pragma once
 
+#include "common/prefetch.h"
+
 #include <pcl_floam/map/neighbor_search.h>
 
 #include <algorithm>
@@ -63,6 +65,8 @@ public:
     const Group& group = groups_[i / kLanes];
     return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
   }
+
+  void prefetchPoints() const { prefetch(groups_.data(), std::min<std::size_t>(groups_.size(), 8) * sizeof(Group)); }
 
   /// Averages a point into its voxel. \return true if the voxel was empty
   bool add(std::uint32_t voxel, const Eigen::Vector3f& offset)

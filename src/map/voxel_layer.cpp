@@ -1,5 +1,7 @@
 #include "map/voxel_layer.h"
 
+#include "common/prefetch.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -91,6 +93,11 @@ std::int32_t VoxelLayer::findBlock(const BlockKey& key) const
       return entry.block;
     }
   }
+}
+
+void VoxelLayer::prefetchEntry(const BlockKey& key) const
+{
+  prefetch(&table_[placeOf(hashOf(key), table_.size() - 1)], 1);
 }
 
 void VoxelLayer::enterInTable(std::int32_t block)

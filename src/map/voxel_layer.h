@@ -38,13 +38,15 @@ public:
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
   void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
+  void nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
+                     Neighbors* neighbors) const override;
   void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
 
 private:
   /// A query in the frame of one block: where blocks and their points are seen from it.
   struct BlockQuery {
-    BlockKey key;            ///< of the block that holds the query
-    Eigen::Vector3f offset;  ///< of the query from that block's corner
+    BlockKey key;                                       ///< of the block that holds the query
+    Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< of the query from that block's corner
   };
 
   /// Finite, and its block's number fits 32 bits: within a billion blocks of the origin.
@@ -54,6 +56,7 @@ private:
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
 
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
+  void prefetchEntry(const BlockKey& key) const;
   std::int32_t findOrAddBlock(const BlockKey& key);
   void enterInTable(std::int32_t block);
   void rebuildTable(std::size_t capacity);
@@ -61,7 +64,8 @@ private:
   void link(std::int32_t block);
 
   /// The k nearest, where the blocks around the query's own reach as far as the search does.
-  void searchAround(const BlockQuery& query, NearestSoFar& nearest) const;
+  /// \param home the query's own block, or kNone
+  void searchAround(const BlockQuery& query, std::int32_t home, NearestSoFar& nearest) const;
 
   /// Calls \p visit(offset of the block's corner from the query, block) for the blocks within \p radius, nearest
   /// ring first; \p squared_limit is read anew before each block, so that the caller can narrow the search.

@@ -1,6 +1,8 @@
 // Nearest neighbours in a layer of the map.
 #include "map/voxel_layer.h"
 
+#include "common/prefetch.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -32,10 +34,9 @@ std::array<int, 3> nearestFirst(float offset, float size)
 
 }  // namespace
 
-void VoxelLayer::searchAround(const BlockQuery& query, NearestSoFar& nearest) const
+void VoxelLayer::searchAround(const BlockQuery& query, std::int32_t home, NearestSoFar& nearest) const
 {
   const auto size = static_cast<float>(block_size_);
-  const std::int32_t home = findBlock(query.key);
   const auto gap_x = squaredGaps(query.offset.x(), size);
   const auto gap_y = squaredGaps(query.offset.y(), size);
   const auto gap_z = squaredGaps(query.offset.z(), size);
@@ -47,9 +48,12 @@ void VoxelLayer::searchAround(const BlockQuery& query, NearestSoFar& nearest) co
   };
   for (const int dz : step_z) {
     for (const int dy : step_y) {
+      const float gap_yz = along(gap_y, dy) + along(gap_z, dz);
+      if (gap_yz > nearest.limit) {
+        continue;
+      }
       for (const int dx : step_x) {
-        const float gap = along(gap_x, dx) + along(gap_y, dy) + along(gap_z, dz);
-        if (gap > nearest.limit) {
+        if (along(gap_x, dx) + gap_yz > nearest.limit) {
           continue;
         }
         const auto place = static_cast<std::size_t>(13L + 9L * dz + 3L * dy + dx);
@@ -115,11 +119,52 @@ void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Nei
   }
   NearestSoFar nearest{k, static_cast<float>(radius * radius), neighbors};
   if (radius <= block_size_) {
-    searchAround(blockQuery(query), nearest);
+    const BlockQuery place = blockQuery(query);
+    searchAround(place, findBlock(place.key), nearest);
     return;
   }
   visitBlocks(blockQuery(query), radius, nearest.limit,
               [&](const Eigen::Vector3f& corner, const VoxelBlock& block) { block.search(corner, nearest); });
+}
+
+void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
+                               Neighbors* neighbors) const
+{
+  if (radius > block_size_) {
+    NeighborSearch::nearestOfEach(queries, count, k, radius, neighbors);
+    return;
+  }
+  // Most of a search's time is waiting for memory. So each step is taken for some queries at once, and asks for what
+  // the next one will read.
+  constexpr std::size_t kTogether = 16;
+  std::array<BlockQuery, kTogether> places;
+  std::array<std::int32_t, kTogether> homes;
+  for (std::size_t first = 0; first < count; first += kTogether) {
+    const std::size_t together = std::min(kTogether, count - first);
+    for (std::size_t i = 0; i < together; ++i) {
+      const Eigen::Vector3d& query = queries[first + i];
+      places[i] = isRepresentable(query) ? blockQuery(query) : BlockQuery{};
+      prefetchEntry(places[i].key);
+    }
+    for (std::size_t i = 0; i < together; ++i) {
+      homes[i] = findBlock(places[i].key);
+      if (homes[i] != VoxelBlock::kNone) {
+        prefetch(&blocks_[static_cast<std::size_t>(homes[i])], sizeof(VoxelBlock));
+      }
+    }
+    for (std::size_t i = 0; i < together; ++i) {
+      if (homes[i] != VoxelBlock::kNone) {
+        blocks_[static_cast<std::size_t>(homes[i])].prefetchPoints();
+      }
+    }
+    for (std::size_t i = 0; i < together; ++i) {
+      neighbors[first + i].count = 0;
+      if (isRepresentable(queries[first + i])) {
+        NearestSoFar nearest{k, static_cast<float>(radius * radius), neighbors[first + i]};
+        searchAround(places[i], homes[i], nearest);
+      }
+    }
+  }
 }
 
 void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const

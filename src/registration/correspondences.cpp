@@ -3,7 +3,9 @@
 #include "registration/line_plane_fit.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <cstddef>
+#include <optional>
 
 namespace pcl_floam {
 
@@ -22,42 +24,84 @@ PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
 constexpr double kNegligible = 0.02;
 
-template <typename Factor, typename Fit>
-void findOne(const RegistrationProblem& problem, const NeighborSearch& search, int k, double weight,
-             double search_radius, const Fit& fit, Correspondence<Factor>& correspondence)
-{
-  correspondence.weight = 0.0;
-  correspondence.searched_at = correspondence.point;
-  Neighbors neighbors;
-  search.nearest(problem.origin + correspondence.point, k, search_radius, neighbors);
-  if (neighbors.count < k) {
-    return;
-  }
-  if (const auto geometry = fit(neighbors, problem.parameters)) {
-    correspondence.factor = makeFactor(*geometry, correspondence.point);
-    correspondence.weight = weight;
-  }
-}
+/// Features of one kind, and how the map holds them.
+template <typename Shape>
+struct FeatureKindProblem {
+  const std::vector<Feature>& features;
+  const std::vector<double>& weights;
+  const NeighborSearch& search;
+  int neighbors;
+  std::optional<Shape> (*fit)(const Neighbors&, const RegistrationParameters&);
+};
 
-template <typename Factor, typename Fit>
-void findOfOneKind(const RegistrationProblem& problem, const std::vector<Feature>& features,
-                   const std::vector<double>& weights, const NeighborSearch& search, int k,
-                   const SweepTrajectory& trajectory, double search_radius, std::size_t stride, const Fit& fit,
+/// The features whose neighbours are searched at one time.
+class Batch {
+public:
+  void begin() { count_ = 0; }
+
+  void ask(std::size_t feature, const Eigen::Vector3d& query)
+  {
+    feature_[count_] = feature;
+    query_[count_] = query;
+    ++count_;
+  }
+
+  /// Links the features asked for to what is found around them.
+  template <typename Factor, typename Shape>
+  void link(const FeatureKindProblem<Shape>& kind, const RegistrationParameters& parameters, double search_radius,
+            std::vector<Correspondence<Factor>>& correspondences)
+  {
+    kind.search.nearestOfEach(query_.data(), count_, kind.neighbors, search_radius, found_.data());
+    for (std::size_t n = 0; n < count_; ++n) {
+      Correspondence<Factor>& correspondence = correspondences[feature_[n]];
+      correspondence.weight = 0.0;
+      correspondence.searched_at = correspondence.point;
+      if (found_[n].count < kind.neighbors) {
+        continue;
+      }
+      if (const auto geometry = kind.fit(found_[n], parameters)) {
+        correspondence.factor = makeFactor(*geometry, correspondence.point);
+        correspondence.weight = kind.weights[feature_[n]];
+      }
+    }
+  }
+
+  static constexpr std::size_t kMost = 16;
+
+private:
+  std::size_t count_ = 0;
+  std::array<std::size_t, kMost> feature_{};
+  std::array<Eigen::Vector3d, kMost> query_;
+  std::array<Neighbors, kMost> found_;
+};
+
+template <typename Factor, typename Shape>
+void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem<Shape>& kind,
+                   const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
                    std::vector<Correspondence<Factor>>& correspondences)
 {
-  correspondences.resize(features.size());
+  correspondences.resize(kind.features.size());
   const double negligible = kNegligible * search_radius;
-  // Each iteration writes its own element only: the result does not depend on who computes what.
-#pragma omp parallel for num_threads(problem.threads) schedule(dynamic, 64)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(features.size());
-       n += static_cast<std::ptrdiff_t>(stride)) {
-    const auto i = static_cast<std::size_t>(n);
-    const Feature& feature = features[i];
-    Correspondence<Factor>& correspondence = correspondences[i];
-    correspondence.point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
-    correspondence.since_reference = trajectory.sinceReference(feature.time);
-    if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
-      findOne(problem, search, k, weights[i], search_radius, fit, correspondence);
+  const std::size_t looked_at = (kind.features.size() + stride - 1) / stride;
+  const auto batches = static_cast<std::ptrdiff_t>((looked_at + Batch::kMost - 1) / Batch::kMost);
+#pragma omp parallel num_threads(problem.threads)
+  {
+    Batch batch;
+    // Each feature writes its own element only: the result does not depend on who computes what.
+#pragma omp for schedule(dynamic, 4)
+    for (std::ptrdiff_t b = 0; b < batches; ++b) {
+      const std::size_t first = static_cast<std::size_t>(b) * Batch::kMost;
+      batch.begin();
+      for (std::size_t n = first; n < std::min(first + Batch::kMost, looked_at); ++n) {
+        const Feature& feature = kind.features[n * stride];
+        Correspondence<Factor>& correspondence = correspondences[n * stride];
+        correspondence.point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
+        correspondence.since_reference = trajectory.sinceReference(feature.time);
+        if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
+          batch.ask(n * stride, problem.origin + correspondence.point);
+        }
+      }
+      batch.link(kind, problem.parameters, search_radius, correspondences);
     }
   }
 }
@@ -69,10 +113,12 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
                          Correspondences& correspondences)
 {
-  findOfOneKind(problem, source.edges, edge_weights, *problem.target.edges, problem.parameters.edge_neighbors,
-                trajectory, search_radius, stride, fitLine, correspondences.edges);
-  findOfOneKind(problem, source.planes, plane_weights, *problem.target.planes, problem.parameters.plane_neighbors,
-                trajectory, search_radius, stride, fitPlane, correspondences.planes);
+  const RegistrationParameters& parameters = problem.parameters;
+  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors, fitLine};
+  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights, *problem.target.planes, parameters.plane_neighbors,
+                                  fitPlane};
+  findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
+  findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
 }
 
 }  // namespace pcl_floam

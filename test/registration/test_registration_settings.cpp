@@ -75,7 +75,7 @@ TEST(RegistrationSettings, RejectorsByNormalsGetNormals)
   }
   EdgePlaneRegistration<PointN, PointN> registration;
   const auto rejector = pcl::make_shared<pcl::registration::CorrespondenceRejectorSurfaceNormal>();
-  rejector->initializeDataContainer<PointN, PointN>();
+  rejector->initializeDataContainer<pcl::PointXYZ, pcl::Normal>();  // the types in which PCL hands it the clouds
   rejector->setThreshold(0.9);
   registration.addCorrespondenceRejector(rejector);
   registration.setInputSource(cloud);

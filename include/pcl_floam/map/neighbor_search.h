@@ -42,6 +42,18 @@ public:
   /// \param radius m, > 0
   virtual void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const = 0;
 
+  /// \ref nearest for \p count queries. A search in a large map can look ahead here, and fetch for one query while it
+  /// works on another.
+  /// \param queries   world frame, m
+  /// \param neighbors room for those of each query
+  virtual void nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
+                             Neighbors* neighbors) const
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      nearest(queries[i], k, radius, neighbors[i]);
+    }
+  }
+
   /// All points within \p radius of \p query, in no particular order. Replaces the contents of \p neighbors.
   virtual void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const = 0;
 };

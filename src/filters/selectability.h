@@ -1,0 +1,18 @@
+/// \file selectability.h
+/// Which points of a scan line could be features, by where they lie in it.
+#pragma once
+
+#include "filters/line_points.h"
+
+#include <pcl_floam/filters/feature_parameters.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// One number a point, 1 where it can't be a feature: out of range, beside a nearer surface (its neighbourhood changes
+/// with the viewpoint), or on a surface seen almost edge on. As wide as the coordinates, for the loops' sake.
+void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::int32_t>& unfit);
+
+}  // namespace pcl_floam
