@@ -162,7 +162,7 @@ void readAscii(const std::filesystem::path& file, const PcdHeader& header, std::
     numbers += field.count;
   }
   constexpr std::size_t kLittle = 1U << 20U;  // bytes; of smaller clouds, the line that is too short is told
-  if (header.points() * header.point_bytes > kLittle && header.points() > (rest.size() + 1) / (2 * numbers)) {
+  if (header.points() * header.point_bytes > kLittle && 2 * numbers * header.points() > rest.size() + 1) {
     failAtByte(file, content.size(), "the file is too short for " + std::to_string(header.points()) + " points");
   }
   cloud.data.assign(header.points() * header.point_bytes, 0);
