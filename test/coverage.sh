@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Line and branch coverage of include/ and src/ by the tests, measured in build/coverage (gcovr; Debian: gcovr).
-# Arguments go to gcovr, e.g. --html-details build/coverage/index.html
+# JOBS=n builds n files at a time. Arguments go to gcovr, e.g. --html-details build/coverage/index.html
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -13,7 +13,7 @@ programs() {
 cmake -S . -B build/coverage -G Ninja -DCMAKE_BUILD_TYPE=None -DPCL_FLOAM_INSTALL=OFF \
   -DCMAKE_CXX_FLAGS="-O1 --coverage -fprofile-update=atomic" >/dev/null
 # shellcheck disable=SC2046
-ninja -C build/coverage $(programs)
+ninja -C build/coverage ${JOBS:+-j "$JOBS"} $(programs)
 find build/coverage -name '*.gcda' -delete
 for program in $(programs); do
   "$(find build/coverage/test -type f -name "$program" -perm -u+x)" --gtest_brief=1 || echo "$program failed" >&2
