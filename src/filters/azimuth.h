@@ -21,16 +21,4 @@ inline float pseudoAzimuth(float x, float y)
   return rising >= 0.0F ? rising : rising + 4.0F;
 }
 
-/// Difference of two pseudo-azimuths, in [-2, 2).
-inline float pseudoAzimuthStep(float from, float to)
-{
-  float step = to - from;
-  if (step < -2.0F) {
-    step += 4.0F;
-  } else if (step >= 2.0F) {
-    step -= 4.0F;
-  }
-  return step;
-}
-
 }  // namespace pcl_floam

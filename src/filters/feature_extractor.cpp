@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -142,7 +143,8 @@ private:
   [[nodiscard]] bool isEdge(int n) const
   {
     return sharpness(n) > 0.0F &&
-           sharpness(n) > parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+           sharpness(n) >
+               parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.
@@ -221,13 +223,32 @@ void validate(const FeatureParameters& p)
 
 void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
                      const FeatureParameters& parameters, FeatureSet& features,
-                     const std::vector<std::uint8_t>& selectable)
+                     const std::vector<std::uint8_t>& selectable, int threads)
 {
+  // Each part takes lines that follow each other, so that the parts' features, one after the other, are in the order
+  // of the lines for every number of parts.
+  const std::size_t parts = std::min(static_cast<std::size_t>(std::max(threads, 1)), lines.lines());
+  std::vector<FeatureSet> found(parts);
   features.clear();
-  LineScratch scratch;
-  LineSelector selector(cloud, lines, timing, parameters, selectable, scratch, features);
-  for (std::size_t m = 0; m < lines.lines(); ++m) {
-    selector.select(m);
+  if (parts > 0) {
+    found.front() = std::move(features);  // its memory
+  }
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+  for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
+    const auto part = static_cast<std::size_t>(p);
+    LineScratch scratch;
+    LineSelector selector(cloud, lines, timing, parameters, selectable, scratch, found[part]);
+    for (std::size_t m = lines.lines() * part / parts; m < lines.lines() * (part + 1) / parts; ++m) {
+      selector.select(m);
+    }
+  }
+  for (std::size_t part = 0; part < parts; ++part) {
+    if (part == 0) {
+      features = std::move(found.front());
+      continue;
+    }
+    features.edges.insert(features.edges.end(), found[part].edges.begin(), found[part].edges.end());
+    features.planes.insert(features.planes.end(), found[part].planes.begin(), found[part].planes.end());
   }
 }
 

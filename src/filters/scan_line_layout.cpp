@@ -1,8 +1,10 @@
 // Scan lines that the cloud's layout tells: ring field, organised rows, file order.
+#include "common/multi_version.h"
 #include "filters/azimuth.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pcl_floam {
@@ -15,12 +17,6 @@ constexpr int kMinScanLines = 2;
 /// Steps between neighbours of a line that go the prevailing way, in a cloud that keeps a sweep's order.
 /// Neighbours swap places where lasers' azimuths differ and where the range noise exceeds the spacing.
 constexpr float kSweepOrderConfidence = 0.8F;
-
-float pseudoAzimuthOf(const CloudView& cloud, std::int32_t i)
-{
-  const auto u = static_cast<std::size_t>(i);
-  return pseudoAzimuth(cloud.x(u), cloud.y(u));
-}
 
 /// Mean |elevation step| (as a tangent) along a direction of an organised cloud.
 float meanElevationStep(const CloudView& cloud, std::size_t step, std::size_t line_length, std::size_t line_step)
@@ -47,6 +43,55 @@ float elevationOf(const CloudView& cloud, std::size_t i)
   return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));
 }
 
+/// Consecutive measurable points of a cloud, enough to make a loop over them worth while.
+struct PointRun {
+  static constexpr std::size_t kMost = 256;
+
+  std::size_t count = 0;
+  std::size_t place = 0;  ///< number of measurable points before this run's first
+  std::array<float, kMost> x;
+  std::array<float, kMost> y;
+  std::array<float, kMost> azimuth;  ///< pseudo-azimuth
+};
+
+PCL_FLOAM_MULTI_VERSION
+void computeAzimuths(std::size_t count, const float* x, const float* y, float* azimuth)
+{
+  for (std::size_t n = 0; n < count; ++n) {
+    azimuth[n] = pseudoAzimuth(x[n], y[n]);
+  }
+}
+
+/// From azimuth 0 at the front to 0 at the rear.
+void turnByHalf(PointRun& run)
+{
+  for (std::size_t n = 0; n < run.count; ++n) {
+    run.azimuth[n] += run.azimuth[n] < 2.0F ? 2.0F : -2.0F;
+  }
+}
+
+/// Steps of azimuth that go up, go down, and jump back to where a line begins.
+struct StepCounts {
+  std::int32_t rising = 0;
+  std::int32_t falling = 0;
+  std::int32_t jumps = 0;
+};
+
+constexpr float kJump = 2.4F;  // 0.6 of a turn: lines may begin late and end early
+
+PCL_FLOAM_MULTI_VERSION
+StepCounts countSteps(std::size_t count, const float* azimuth)
+{
+  StepCounts counts;
+  for (std::size_t n = 1; n < count; ++n) {
+    const float step = azimuth[n] - azimuth[n - 1];
+    counts.rising += static_cast<std::int32_t>(step > 0.0F) & static_cast<std::int32_t>(step <= kJump);
+    counts.falling += static_cast<std::int32_t>(step < 0.0F) & static_cast<std::int32_t>(step >= -kJump);
+    counts.jumps += static_cast<std::int32_t>(std::abs(step) > kJump);
+  }
+  return counts;
+}
+
 /// The scan lines that result if the cloud's order is cut wherever azimuth jumps back by most of a turn.
 struct OrderCut {
   std::vector<std::int32_t> begin{0};
@@ -55,24 +100,22 @@ struct OrderCut {
   std::size_t jumps_up = 0;
   std::size_t jumps_down = 0;
   double tilt = 0.0;  ///< sum of the changes of elevation at the jumps
-  float previous = 0.0F;
 
-  /// \param place number of the measurable points before point \p i, the last of which is \p last
-  void advance(const CloudView& cloud, std::size_t last, std::size_t i, std::int32_t place, float azimuth)
+  /// Adds the steps within a run; the next run begins with this one's last point.
+  void advance(const CloudView& cloud, const ScanLines& lines, const PointRun& run)
   {
-    constexpr float kJump = 2.4F;  // 0.6 of a turn: lines may begin late and end early
-    const float step = azimuth - previous;
-    previous = azimuth;
-    if (place == 0) {
-      return;
-    }
-    if (std::abs(step) > kJump) {
-      (step > 0.0F ? jumps_up : jumps_down)++;
-      begin.push_back(place);
-      tilt += std::abs(elevationOf(cloud, i) - elevationOf(cloud, last));
-    } else {
-      rising += step > 0.0F ? 1U : 0U;
-      falling += step < 0.0F ? 1U : 0U;
+    const StepCounts counts = countSteps(run.count, run.azimuth.data());
+    rising += static_cast<std::size_t>(counts.rising);
+    falling += static_cast<std::size_t>(counts.falling);
+    for (std::size_t n = 1; n < run.count && counts.jumps > 0; ++n) {
+      const float step = run.azimuth[n] - run.azimuth[n - 1];
+      if (std::abs(step) > kJump) {
+        (step > 0.0F ? jumps_up : jumps_down)++;
+        const std::size_t place = run.place + n;
+        begin.push_back(static_cast<std::int32_t>(place));
+        tilt += std::abs(elevationOf(cloud, static_cast<std::size_t>(lines.index[place])) -
+                         elevationOf(cloud, static_cast<std::size_t>(lines.index[place - 1])));
+      }
     }
   }
 
@@ -93,6 +136,31 @@ struct OrderCut {
     return confidence() >= kFileOrderConfidence && begin.size() >= 4 && begin.size() <= kMaxScanLines;
   }
 };
+
+/// The measurable points, in the cloud's order.
+void listMeasurable(const CloudView& cloud, std::vector<std::int32_t>& index)
+{
+  index.resize(cloud.size);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    index[count] = static_cast<std::int32_t>(i);
+    count += isMeasurable(cloud, i) ? 1U : 0U;
+  }
+  index.resize(count);
+}
+
+/// The run that begins with the measurable point number \p place.
+void readRun(const CloudView& cloud, const std::vector<std::int32_t>& index, std::size_t place, PointRun& run)
+{
+  run.place = place;
+  run.count = std::min(PointRun::kMost, index.size() - place);
+  for (std::size_t n = 0; n < run.count; ++n) {
+    const auto i = static_cast<std::size_t>(index[place + n]);
+    run.x[n] = cloud.x(i);
+    run.y[n] = cloud.y(i);
+  }
+  computeAzimuths(run.count, run.x.data(), run.y.data(), run.azimuth.data());
+}
 
 }  // namespace
 
@@ -124,10 +192,11 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
   std::size_t falling = 0;
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     for (std::int32_t n = lines.begin[m] + 1; n < lines.begin[m + 1]; ++n) {
-      const float step = pseudoAzimuthStep(pseudoAzimuthOf(cloud, lines.index[static_cast<std::size_t>(n) - 1]),
-                                           pseudoAzimuthOf(cloud, lines.index[static_cast<std::size_t>(n)]));
-      rising += step > 0.0F ? 1U : 0U;
-      falling += step < 0.0F ? 1U : 0U;
+      const auto a = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n) - 1]);
+      const auto b = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
+      const float turn = cloud.x(a) * cloud.y(b) - cloud.y(a) * cloud.x(b);  // of a left turn's sign
+      rising += turn > 0.0F ? 1U : 0U;
+      falling += turn < 0.0F ? 1U : 0U;
     }
   }
   const std::size_t steps = rising + falling;
@@ -139,8 +208,10 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     std::sort(lines.index.begin() + lines.begin[m], lines.index.begin() + lines.begin[m + 1],
               [&cloud](std::int32_t a, std::int32_t b) {
-                const float azimuth_a = pseudoAzimuthOf(cloud, a);
-                const float azimuth_b = pseudoAzimuthOf(cloud, b);
+                const float azimuth_a =
+                    pseudoAzimuth(cloud.x(static_cast<std::size_t>(a)), cloud.y(static_cast<std::size_t>(a)));
+                const float azimuth_b =
+                    pseudoAzimuth(cloud.x(static_cast<std::size_t>(b)), cloud.y(static_cast<std::size_t>(b)));
                 return azimuth_a != azimuth_b ? azimuth_a < azimuth_b : a < b;
               });
   }
@@ -204,19 +275,15 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
 
 bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
 {
+  listMeasurable(cloud, lines.index);
   OrderCut front;
   OrderCut rear;
-  std::size_t last = cloud.size;
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (!isMeasurable(cloud, i)) {
-      continue;
-    }
-    const auto place = static_cast<std::int32_t>(lines.index.size());
-    const float azimuth = pseudoAzimuth(cloud.x(i), cloud.y(i));
-    front.advance(cloud, last, i, place, azimuth);
-    rear.advance(cloud, last, i, place, azimuth < 2.0F ? azimuth + 2.0F : azimuth - 2.0F);
-    last = i;
-    lines.index.push_back(static_cast<std::int32_t>(i));
+  PointRun run;
+  for (std::size_t place = 0; place + 1 < lines.index.size(); place += PointRun::kMost - 1) {
+    readRun(cloud, lines.index, place, run);
+    front.advance(cloud, lines, run);
+    turnByHalf(run);
+    rear.advance(cloud, lines, run);
   }
   // Turned by half a turn, the order looks as good; but only where lines really end does the elevation change.
   const bool is_rear = rear.isPlausible() && !(front.isPlausible() && front.meanTilt() >= rear.meanTilt());

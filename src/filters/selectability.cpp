@@ -71,7 +71,8 @@ void markOccluded(const LinePoints& line, std::size_t half_window, std::vector<s
       const bool falls_back = line.range[n + 1] > line.range[n];
       const std::size_t begin = falls_back ? n + 1 : n + 1 - std::min(n + 1, half_window);
       const std::size_t end = falls_back ? std::min(unfit.size(), n + 1 + half_window) : n + 1;
-      std::fill(unfit.begin() + static_cast<std::ptrdiff_t>(begin), unfit.begin() + static_cast<std::ptrdiff_t>(end), 1);
+      std::fill(unfit.begin() + static_cast<std::ptrdiff_t>(begin), unfit.begin() + static_cast<std::ptrdiff_t>(end),
+                1);
     }
   }
 }

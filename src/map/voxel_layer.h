@@ -45,7 +45,7 @@ public:
 private:
   /// A query in the frame of one block: where blocks and their points are seen from it.
   struct BlockQuery {
-    BlockKey key;                                       ///< of the block that holds the query
+    BlockKey key;                                      ///< of the block that holds the query
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< of the query from that block's corner
   };
 

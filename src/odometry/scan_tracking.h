@@ -112,7 +112,7 @@ struct OdometryPipeline::Impl {
     }
     report.milliseconds.scan_lines = watch.lap();
 
-    pcl_floam::extractFeatures(scan, lines, timing, parameters.features, measured);
+    pcl_floam::extractFeatures(scan, lines, timing, parameters.features, measured, {}, parameters.threads);
     correctVerticalAngle(parameters.vertical_correction, measured);
     report.milliseconds.features = watch.lap();
 

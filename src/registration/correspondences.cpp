@@ -114,9 +114,10 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          Correspondences& correspondences)
 {
   const RegistrationParameters& parameters = problem.parameters;
-  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors, fitLine};
-  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights, *problem.target.planes, parameters.plane_neighbors,
-                                  fitPlane};
+  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors,
+                                          fitLine};
+  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights, *problem.target.planes,
+                                            parameters.plane_neighbors, fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
 }

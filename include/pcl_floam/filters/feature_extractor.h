@@ -40,8 +40,9 @@ template <typename Indices>
 /// \param[out] features overwritten; its memory is reused. In the order of the scan lines.
 /// \param selectable empty, or one per point of the cloud: only points with a nonzero entry become features, while
 ///                   all points serve as neighbours, so that a cut does not look like an edge
+/// \param threads    to share the work; the result is the same for every number. >= 1
 void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
                      const FeatureParameters& parameters, FeatureSet& features,
-                     const std::vector<std::uint8_t>& selectable = {});
+                     const std::vector<std::uint8_t>& selectable = {}, int threads = 1);
 
 }  // namespace pcl_floam
