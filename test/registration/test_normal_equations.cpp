@@ -145,15 +145,17 @@ TEST_F(NormalEquationsTest, ATwistThatFollowsThePoseReducesToIt)
 
 TEST_F(NormalEquationsTest, ItsInformationIsTheHessianAlongThatMotion)
 {
-  const Scan exact(trajectory_, 0.0);
+  // From its start on all times are of one sign: pose and twist are coupled.
+  const SweepTrajectory from_start(trajectory_.pose(), trajectory_.twist(), 0.0);
+  const Scan exact(from_start, 0.0);
   SweepModel model;
   model.freedom = SweepFreedom::follows_pose;
   model.sweep_per_motion = 0.8;
-  const NormalEquations reduced = reducedToPose(equationsOf(exact.along(trajectory_)), model);
+  const NormalEquations reduced = reducedToPose(equationsOf(exact.along(from_start)), model);
   for (int i = 0; i < 6; ++i) {
     const Vector6 step = 1e-4 * Vector6::Unit(i);
     const auto costAt = [&](double sign) {
-      return equationsOf(exact.along(trajectory_.perturbed(sign * step, 0.8 * sign * step))).cost;
+      return equationsOf(exact.along(from_start.perturbed(sign * step, 0.8 * sign * step))).cost;
     };
     const double numeric = (costAt(1.0) + costAt(-1.0)) / 1e-8;  // the cost between them is zero
     EXPECT_NEAR(reduced.information(i, i) / numeric, 1.0, 1e-2);
