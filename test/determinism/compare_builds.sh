@@ -11,20 +11,20 @@ trap 'rm -rf "$work"' EXIT
 cmake -S "$sources" -B "$build/debug" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DPCL_FLOAM_BUILD_TESTS=OFF \
   -DPCL_FLOAM_INSTALL=OFF >/dev/null
 cmake --build "$build/debug" --target pcl_floam_odometry >/dev/null
-"$build/examples/simulator/pcl_floam_simulate" warehouse --scans 12 --seed 4 --output "$work/data" >/dev/null
+"$build/bin/pcl_floam_simulate" warehouse --scans 12 --seed 4 --output "$work/data" >/dev/null
 
 run() { # run NAME TOOL [OPTION]...
   local name=$1 tool=$2
   shift 2
   "$tool" "$work/data/scans" --output "$work/$name" --plot none --quiet "$@"
 }
-release=$build/examples/tools/pcl_floam_odometry
+release=$build/bin/pcl_floam_odometry
 run once "$release"
 run again "$release"
 for threads in 2 3 8; do
   run "threads$threads" "$release" --threads "$threads"
 done
-run debug "$build/debug/examples/tools/pcl_floam_odometry"
+run debug "$build/debug/bin/pcl_floam_odometry"
 
 for name in again threads2 threads3 threads8; do
   for file in poses.kitti.txt poses.tum.txt map_edges.pcd map_planes.pcd; do
