@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,11 @@ struct Corpus {
   const char* folder;
   FuzzTarget target;
 };
+
+void PrintTo(const Corpus& corpus, std::ostream* out)
+{
+  *out << corpus.folder;
+}
 
 class FuzzCorpus : public ::testing::TestWithParam<Corpus> {};
 
