@@ -1,5 +1,7 @@
 #include <pcl_floam/common/cloud_view.h>
 
+#include "common/field_type.h"
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -21,14 +23,6 @@ FieldView::Type typeOf(std::uint8_t datatype)
     case pcl::PCLPointField::FLOAT64: return FieldView::Type::float64;
     default: return FieldView::Type::none;
   }
-}
-
-template <typename T>
-double readAs(const std::uint8_t* bytes)
-{
-  T value;
-  std::memcpy(&value, bytes, sizeof(value));
-  return static_cast<double>(value);
 }
 
 /// Byte offset of a coordinate that must be a float32.
@@ -72,19 +66,9 @@ constexpr std::array<std::string_view, 2> kIntensityNames{"intensity", "reflecti
 
 double FieldView::read(const std::uint8_t* point) const
 {
-  const std::uint8_t* bytes = point + offset;
-  switch (type) {
-    case Type::int8: return readAs<std::int8_t>(bytes);
-    case Type::uint8: return readAs<std::uint8_t>(bytes);
-    case Type::int16: return readAs<std::int16_t>(bytes);
-    case Type::uint16: return readAs<std::uint16_t>(bytes);
-    case Type::int32: return readAs<std::int32_t>(bytes);
-    case Type::uint32: return readAs<std::uint32_t>(bytes);
-    case Type::float32: return readAs<float>(bytes);
-    case Type::float64: return readAs<double>(bytes);
-    case Type::none: break;
-  }
-  return 0.0;
+  double value = 0.0;
+  withReader(*this, [&](const auto& reader) { value = reader(point); });
+  return value;
 }
 
 void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& view)

@@ -1,5 +1,6 @@
 #include <pcl_floam/filters/scan_timing.h>
 
+#include "common/field_type.h"
 #include "filters/azimuth.h"
 #include "filters/scan_line_finders.h"
 
@@ -45,13 +46,15 @@ bool timingFromField(const CloudView& cloud, ScanTiming& timing)
   }
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    const double t = cloud.time.read(cloud.point(i));
-    if (std::isfinite(t) && isMeasurable(cloud, i)) {
-      first = std::min(first, t);
-      last = std::max(last, t);
+  withReader(cloud.time, [&](const auto& time_of) {
+    for (std::size_t i = 0; i < cloud.size; ++i) {
+      const double t = time_of(cloud.point(i));
+      if ((t < first || t > last) && std::isfinite(t) && isMeasurable(cloud, i)) {
+        first = std::min(first, t);
+        last = std::max(last, t);
+      }
     }
-  }
+  });
   if (!(last > first)) {  // empty, or a field that the driver left constant
     return false;
   }
