@@ -10,6 +10,15 @@ option(PCL_FLOAM_BUILD_TESTS "Build the tests" ${PCL_FLOAM_TOP_LEVEL})
 option(PCL_FLOAM_INSTALL "Create the install target" ${PCL_FLOAM_TOP_LEVEL})
 option(PCL_FLOAM_WARNINGS_AS_ERRORS "Treat warnings of this project's own code as errors" OFF)
 set(PCL_FLOAM_SANITIZER "" CACHE STRING "Sanitizers for this project's own targets, e.g. address,undefined or thread")
+option(PCL_FLOAM_FUZZ "Build the fuzzers (clang only), with the address and undefined-behaviour sanitizers" OFF)
+set(PCL_FLOAM_FUZZ_SECONDS 300 CACHE STRING "How long ctest -L fuzz runs each fuzzer")
+if(PCL_FLOAM_FUZZ)
+  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "PCL_FLOAM_FUZZ needs clang's libFuzzer: -DCMAKE_C_COMPILER=clang -DCMAKE_CXX_COMPILER=clang++")
+  endif()
+  # Numbers from files are cast to integers in places: a cast that is out of range counts as a fault, too.
+  set(PCL_FLOAM_SANITIZER "address,undefined,float-cast-overflow,fuzzer-no-link")
+endif()
 
 # With no build type at all an odometry is ten times too slow: say so, but leave the choice to the user.
 if(PCL_FLOAM_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
@@ -29,6 +38,9 @@ if(PCL_FLOAM_SANITIZER)
   # Under the address sanitizer Eigen pads each allocation by itself, PCL's own libraries were built without it, and
   # what one allocates the other frees.
   target_compile_definitions(pcl_floam_build_flags INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
+endif()
+if(PCL_FLOAM_FUZZ)
+  target_compile_options(pcl_floam_build_flags INTERFACE -fno-sanitize-recover=all)
 endif()
 
 # For libraries: the same flags without linking to the target, which an exported library must not mention.

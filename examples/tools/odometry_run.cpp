@@ -82,12 +82,32 @@ ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder)
   return {options.from, options.max_scans == 0 ? rest : std::min(rest, options.max_scans)};
 }
 
+std::string timesProblem(const ScanSource& scans, ScanRange range)
+{
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = range.first + 1; i < range.first + range.count && scans.stamp(i); ++i) {
+    if (!(*scans.stamp(i) > *scans.stamp(i - 1))) {
+      first = count++ == 0 ? scans.path(i).filename().string() : first;
+    }
+  }
+  if (count == 0) {
+    return {};
+  }
+  return "times.txt: the time of " + first + " is not after that of the scan before" +
+         (count > 1 ? ", nor are " + std::to_string(count - 1) + " more" : "");
+}
+
 RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range, ResultWriter& writer,
                       bool quiet)
 {
   RunResult result;
   ProgressBar progress(range.count, quiet);
   ScanTracker tracker(odometry, scans, progress, result);
+  const std::string times_problem = timesProblem(scans, range);
+  if (!times_problem.empty()) {
+    progress.message(times_problem);
+  }
   for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
     const std::size_t scan = range.first + i;
     const OdometryReport& report = tracker.track(scan);

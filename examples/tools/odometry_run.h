@@ -47,6 +47,9 @@ struct ScanRange {
 /// \throws std::invalid_argument if the folder has no scan of that number.
 [[nodiscard]] ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder);
 
+/// Where `times.txt` does not rise; empty if it does. The odometry takes such scans as if no time had passed.
+[[nodiscard]] std::string timesProblem(const ScanSource& scans, ScanRange range);
+
 /// Tracks scan after scan and writes what comes of each at once. Scans that cannot be read or tracked are told and
 /// predicted over. Ends early on Ctrl-C, or if the results cannot be written.
 [[nodiscard]] RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range,

@@ -15,6 +15,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <system_error>
 
 using namespace pcl_floam;
 using namespace pcl_floam::tools;
@@ -47,6 +48,15 @@ SE3 initialPose(const std::vector<double>& values)
   return pose;
 }
 
+/// The map's files would be scans of the next run.
+void refuseToWriteAmong(const ScanSource& scans, const std::filesystem::path& output)
+{
+  std::error_code error;
+  if (std::filesystem::equivalent(scans.folder(), output, error)) {
+    throw FileError(output, "is the folder of the scans: the results need another");
+  }
+}
+
 /// All that a run needs, checked before it begins.
 struct Preparation {
   Preparation(const OdometryOptions& options)
@@ -59,6 +69,7 @@ struct Preparation {
       odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
                           options.localize ? MapUse::frozen : MapUse::kept_current);
     }
+    refuseToWriteAmong(scans, options.output);
     writer = std::make_unique<ResultWriter>(options.output);
   }
 

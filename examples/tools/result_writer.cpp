@@ -35,9 +35,10 @@ ResultWriter::ResultWriter(const std::filesystem::path& folder)
   for (const Stage& stage : kStages) {
     timing_ << ',' << stage.name << "_ms";
   }
+  errno = 0;
   timing_ << '\n' << std::fixed << std::setprecision(3) << std::flush;
   if (!timing_) {
-    throw FileError(timing_path_, "cannot be written");
+    throw FileError::ofSystem(timing_path_, "cannot be written");
   }
 }
 
@@ -50,19 +51,21 @@ void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& r
   for (const Stage& stage : kStages) {
     timing_ << ',' << report.milliseconds.*stage.time;
   }
+  errno = 0;
   timing_ << '\n' << std::flush;
   if (!timing_) {
-    throw FileError(timing_path_, "cannot be written");
+    throw FileError::ofSystem(timing_path_, "cannot be written");
   }
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text)
 {
+  errno = 0;
   std::ofstream stream(file);
   stream << text;
   stream.close();
   if (!stream) {
-    throw FileError(file, "cannot be written");
+    throw FileError::ofSystem(file, "cannot be written");
   }
 }
 

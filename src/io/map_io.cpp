@@ -39,13 +39,16 @@ Eigen::Vector3d originFor(const Points& points)
   return (0.5 * (lowest + highest)).array().round();
 }
 
+// Under another name until it is whole: a run that is killed meanwhile, or a full disk, leaves the former map.
 // PCL's PCDWriter refuses clouds without points, and prints the VIEWPOINT with six digits only.
 void writeLayer(const Points& points, const std::filesystem::path& file)
 {
   const Eigen::Vector3d origin = originFor(points);
-  std::ofstream stream(file, std::ios::binary);
+  const std::filesystem::path unfinished = file.string() + ".part";
+  errno = 0;
+  std::ofstream stream(unfinished, std::ios::binary);
   if (!stream) {
-    throw FileError(file, "cannot be created");
+    throw FileError::ofSystem(file, "cannot be created");
   }
   stream.imbue(std::locale::classic());
   stream << std::fixed << std::setprecision(0);
@@ -59,8 +62,15 @@ void writeLayer(const Points& points, const std::filesystem::path& file)
     stream.write(reinterpret_cast<const char*>(relative.data()), 3 * sizeof(float));
   }
   stream.close();
+  std::error_code error;
   if (!stream) {
-    throw FileError(file, "cannot be written");
+    const FileError problem = FileError::ofSystem(file, "cannot be written");
+    std::filesystem::remove(unfinished, error);
+    throw problem;
+  }
+  std::filesystem::rename(unfinished, file, error);
+  if (error) {
+    throw FileError(file, "cannot be replaced: " + error.message());
   }
 }
 
@@ -70,6 +80,9 @@ Points readLayer(const std::filesystem::path& file)
   const PcdHeader header = parsePcdHeader(file, content);
   pcl::PCLPointCloud2 cloud;
   readPcdBody(file, header, content, cloud);
+  if (!header.viewpoint.allFinite()) {
+    throw FileError(file, "VIEWPOINT, which the map's points are relative to, is not finite");
+  }
   const CloudView view = viewOf(cloud);
   Points points(view.size);
   for (std::size_t i = 0; i < view.size; ++i) {

@@ -39,9 +39,6 @@ void interleave(const PcdHeader& header, const std::vector<char>& columns, pcl::
   cloud.data.assign(header.points() * header.point_bytes, 0);
   const char* source = columns.data();
   for (const PcdField& field : header.fields) {
-    if (field.isPadding()) {
-      continue;
-    }
     std::uint8_t* target = cloud.data.data() + field.offset;
     for (std::size_t i = 0; i < header.points(); ++i) {
       std::memcpy(target, source, field.bytes());
@@ -54,10 +51,7 @@ void interleave(const PcdHeader& header, const std::vector<char>& columns, pcl::
 void readCompressed(const std::filesystem::path& file, const PcdHeader& header, std::string_view content,
                     pcl::PCLPointCloud2& cloud)
 {
-  std::size_t needed = 0;
-  for (const PcdField& field : header.fields) {
-    needed += field.isPadding() ? 0 : header.points() * field.bytes();
-  }
+  const std::size_t needed = header.points() * header.point_bytes;
   std::uint32_t sizes[2] = {0, 0};  // compressed, uncompressed
   const std::size_t available = content.size() - header.body_begin;
   if (available < sizeof(sizes)) {
@@ -162,8 +156,13 @@ void readAscii(const std::filesystem::path& file, const PcdHeader& header, std::
                pcl::PCLPointCloud2& cloud)
 {
   std::string_view rest = content.substr(header.body_begin);
-  // Every point takes two characters at least: a header that promises more asks for memory in vain.
-  if (header.points() > 0 && header.points() > rest.size() / 2 + 1) {
+  // Every number takes two characters at least: a header that promises more asks for memory in vain.
+  std::size_t numbers = 0;
+  for (const PcdField& field : header.fields) {
+    numbers += field.count;
+  }
+  constexpr std::size_t kLittle = 1U << 20U;  // bytes; of smaller clouds, the line that is too short is told
+  if (header.points() * header.point_bytes > kLittle && 2 * numbers * header.points() > rest.size() + 1) {
     failAtByte(file, content.size(), "the file is too short for " + std::to_string(header.points()) + " points");
   }
   cloud.data.assign(header.points() * header.point_bytes, 0);

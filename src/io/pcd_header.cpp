@@ -191,6 +191,11 @@ private:
 
   void layOutFields()
   {
+    if (header_.encoding == PcdEncoding::binary_compressed) {
+      const auto isPadding = [](const PcdField& field) { return field.isPadding(); };
+      header_.fields.erase(std::remove_if(header_.fields.begin(), header_.fields.end(), isPadding),
+                           header_.fields.end());
+    }
     std::uint64_t offset = 0;
     for (PcdField& field : header_.fields) {
       if (field.type == 'F' && field.size < 4) {
@@ -204,6 +209,9 @@ private:
       }
     }
     header_.point_bytes = static_cast<std::uint32_t>(offset);
+    if (offset * header_.width > std::numeric_limits<std::uint32_t>::max()) {
+      fail("a row of points has more bytes than PCL can count");
+    }
     for (const char* name : {"x", "y", "z"}) {
       checkCoordinate(name);
     }

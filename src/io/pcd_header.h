@@ -22,7 +22,7 @@ struct PcdField {
   std::uint32_t offset = 0;  ///< bytes from the start of the point
 
   [[nodiscard]] std::uint32_t bytes() const { return size * count; }
-  /// Filling between other fields: `binary_compressed` files leave it out.
+  /// Filling between other fields. `binary_compressed` files leave it out, and so do we then.
   [[nodiscard]] bool isPadding() const { return name == "_"; }
 };
 

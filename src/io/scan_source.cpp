@@ -78,8 +78,15 @@ struct Listing {
 Listing listScans(const fs::path& folder)
 {
   std::error_code error;
-  if (!fs::is_directory(folder, error)) {
-    throw FileError(folder, fs::exists(folder, error) ? "is no folder" : "no such folder");
+  const fs::file_status status = fs::status(folder, error);
+  if (status.type() == fs::file_type::not_found) {
+    throw FileError(folder, "no such folder");
+  }
+  if (error) {
+    throw FileError(folder, "cannot be reached: " + error.message());
+  }
+  if (!fs::is_directory(status)) {
+    throw FileError(folder, "is no folder");
   }
   fs::directory_iterator entries(folder, error);
   Listing listing;

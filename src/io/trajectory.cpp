@@ -138,13 +138,15 @@ Trajectory readTrajectory(const std::filesystem::path& file, TrajectoryFormat fo
 }
 
 TrajectoryWriter::TrajectoryWriter(std::filesystem::path file, TrajectoryFormat format)
-    : path_(std::move(file)), format_(format), stream_(path_)
+    : path_(std::move(file)), format_(format)
 {
   if (format_ == TrajectoryFormat::automatic) {
     throw std::invalid_argument("TrajectoryWriter: the format must be named");
   }
+  errno = 0;
+  stream_.open(path_);
   if (!stream_) {
-    throw FileError(path_, "cannot be created");
+    throw FileError::ofSystem(path_, "cannot be created");
   }
   stream_.imbue(std::locale::classic());
 }
@@ -165,9 +167,10 @@ void TrajectoryWriter::write(const StampedPose& pose)
       stream_ << ' ' << number;
     }
   }
+  errno = 0;
   stream_ << '\n' << std::flush;
   if (!stream_) {
-    throw FileError(path_, "cannot be written");
+    throw FileError::ofSystem(path_, "cannot be written");
   }
 }
 

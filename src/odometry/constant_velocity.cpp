@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::size_t kRememberedPeriods = 9;
 constexpr double kMaxExtrapolation = 10.0;  // periods
+constexpr double kClockWasSet = 100.0;      // periods
+constexpr double kNoTime = 0.01;            // periods; a velocity over less would be the noise of the pose
 constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface is as likely as not another one
 
 }  // namespace
@@ -34,15 +36,24 @@ double ScanClock::tick(std::optional<double> stamp)
     return 1.0;
   }
   const double elapsed = *stamp - *last_stamp_;
+  const double usual = period();
   last_stamp_ = stamp;
-  if (elapsed <= 0.0) {
+  const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
+  if (!clock_was_set && elapsed <= kNoTime * usual) {
     return 0.0;
   }
+  if (elapsed > 0.0 && std::isfinite(elapsed)) {
+    remember(elapsed);  // even then: the period may have been taken from stamps that were wrong
+  }
+  return clock_was_set ? 1.0 : elapsed / period();
+}
+
+void ScanClock::remember(double elapsed)
+{
   if (recent_.size() == kRememberedPeriods) {
     recent_.erase(recent_.begin());
   }
   recent_.push_back(elapsed);
-  return elapsed / period();
 }
 
 SE3 ConstantVelocity::motion(double periods) const

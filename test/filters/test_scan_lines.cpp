@@ -274,5 +274,21 @@ TEST(ScanLines, FailuresHaveReasons)
   }
 }
 
+TEST(ScanLines, AFewScatteredElevationsAreNoClusters)
+{
+  // So few points that chance alone puts some side by side and leaves gaps between them.
+  std::mt19937 random(4);
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  for (int i = 0; i < 500; ++i) {
+    const double azimuth = uniform(random, kPi);
+    const double elevation = uniform(random, 10.0 * kPi / 180.0);
+    cloud.push_back(pcl::PointXYZ(static_cast<float>(5.0 * std::cos(azimuth) * std::cos(elevation)),
+                                  static_cast<float>(5.0 * std::sin(azimuth) * std::cos(elevation)),
+                                  static_cast<float>(5.0 * std::sin(elevation))));
+  }
+  EXPECT_EQ(find(viewOf(cloud)).failure, ScanLineFailure::no_line_structure);
+  EXPECT_FALSE(find(viewOf(cloud), ScanLineSource::elevation_clusters).valid());
+}
+
 }  // namespace
 }  // namespace pcl_floam::test

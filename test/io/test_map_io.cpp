@@ -105,6 +105,21 @@ TEST(MapIo, AnEmptyMapReadsBackEmpty)
   EXPECT_TRUE(loadMap(fresh).empty());
 }
 
+TEST(MapIo, AMapThatIsNowhereIsAnError)
+{
+  const TemporaryFolder folder;
+  saveMap(mapAround({50000.0, 0.0, 0.0}), folder.path());
+  std::string text = test::contentOf(folder.path() / kMapEdgesFile);
+  const std::size_t begin = text.find("VIEWPOINT ") + 10;
+  folder.write(kMapEdgesFile, text.replace(begin, text.find(' ', begin) - begin, "nan"));
+  try {
+    (void)loadMap(folder.path());
+    ADD_FAILURE() << "loaded";
+  } catch (const FileError& error) {
+    EXPECT_NE(std::string(error.what()).find("VIEWPOINT"), std::string::npos) << error.what();
+  }
+}
+
 TEST(MapIo, MissingAndUnwritableFilesAreErrors)
 {
   const TemporaryFolder folder;

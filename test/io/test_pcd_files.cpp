@@ -259,6 +259,31 @@ TEST_F(PcdHeaders, AFewCompressedBytesCannotAskForGigabytes)
   EXPECT_NE(reason.find("33 compressed bytes cannot hold 3200000000"), std::string::npos) << reason;
 }
 
+TEST_F(PcdHeaders, WidePointsThatTheFileCannotHoldAskForNoMemory)
+{
+  // 300 points of 60000 numbers each would take 72 MB.
+  std::string text = header("COUNT", "1 1 1 15000");
+  text.replace(text.find("WIDTH 2"), 7, "WIDTH 300");
+  text.replace(text.find("POINTS 2"), 8, "POINTS 300");
+  std::string points;
+  for (int i = 0; i < 300; ++i) {
+    points += "1 2 3 4\n";
+  }
+  const std::string reason = reasonOf(folder.write("bad.pcd", text + points));
+  EXPECT_NE(reason.find("the file is too short for 300 points"), std::string::npos) << reason;
+}
+
+TEST_F(PcdHeaders, PaddingOfCompressedFilesTakesNoMemory)
+{
+  std::string text = header("COUNT", "1 1 1 15000");
+  text.replace(text.find("x y z t"), 7, "x y z _");
+  text.replace(text.find("DATA ascii"), 10, "DATA binary_compressed");
+  pcl::PCLPointCloud2 cloud;
+  readPcd(folder.write("good.pcd", compressedFile(std::string(24, '\1'), 25, 24, text)), cloud);
+  EXPECT_EQ(cloud.data.size(), 24U);
+  EXPECT_EQ(cloud.point_step, 12U);
+}
+
 TEST_F(PcdHeaders, FieldsOfSeveralElementsKeepTheirPlaces)
 {
   std::string text = header("DATA", "binary_compressed");

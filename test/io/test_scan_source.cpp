@@ -149,5 +149,12 @@ TEST_F(KittiBin, ACutOffFileIsAnErrorWithItsPosition)
   EXPECT_THROW(readKittiBin(folder.path(), cloud), FileError);
 }
 
+TEST_F(KittiBin, AnOversizedFileIsRefusedUnread)
+{
+  const auto file = folder.write("0.bin", "");
+  std::filesystem::resize_file(file, 1ULL << 40);  // a hole: it takes no room on the disk
+  EXPECT_NE(reasonOf([&] { readKittiBin(file, cloud); }).find("has 1099511627776 bytes: too large"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pcl_floam

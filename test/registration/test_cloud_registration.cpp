@@ -95,6 +95,17 @@ TEST(CloudRegistration, ARigidMotionOfBothCloudsChangesNothing)
   EXPECT_LT(difference(*source, motion_of_both.inverse() * result * motion_of_both, expected), 0.005 * kSpacing);
 }
 
+TEST(CloudRegistration, TheFrameOfTheSourceChangesNothing)
+{
+  // What is known of the source's shapes turns with it.
+  const auto source = awayFromTruth();
+  const auto target = sampledObject(1, 1.0);
+  const Eigen::Matrix4d expected = align(source, target).transform;
+  const Eigen::Matrix4d turn = exp((Vector6() << 0.4, -0.2, 0.3, 0.6, -0.8, 0.9).finished()).matrix();
+  const Eigen::Matrix4d result = align(moved(*source, turn), target, turn.inverse()).transform;
+  EXPECT_LT(difference(*source, result * turn, expected), 0.005 * kSpacing);
+}
+
 TEST(CloudRegistration, TwoKilometresFromTheOriginAreNoDifference)
 {
   const auto source = awayFromTruth(100.0);

@@ -143,6 +143,25 @@ TEST_F(NormalEquationsTest, ATwistThatFollowsThePoseReducesToIt)
   }
 }
 
+TEST_F(NormalEquationsTest, ItsInformationIsTheHessianAlongThatMotion)
+{
+  // From its start on all times are of one sign: pose and twist are coupled.
+  const SweepTrajectory from_start(trajectory_.pose(), trajectory_.twist(), 0.0);
+  const Scan exact(from_start, 0.0);
+  SweepModel model;
+  model.freedom = SweepFreedom::follows_pose;
+  model.sweep_per_motion = 0.8;
+  const NormalEquations reduced = reducedToPose(equationsOf(exact.along(from_start)), model);
+  for (int i = 0; i < 6; ++i) {
+    const Vector6 step = 1e-4 * Vector6::Unit(i);
+    const auto costAt = [&](double sign) {
+      return equationsOf(exact.along(from_start.perturbed(sign * step, 0.8 * sign * step))).cost;
+    };
+    const double numeric = (costAt(1.0) + costAt(-1.0)) / 1e-8;  // the cost between them is zero
+    EXPECT_NEAR(reduced.information(i, i) / numeric, 1.0, 1e-2);
+  }
+}
+
 TEST_F(NormalEquationsTest, SumsAreTheSameBitsForEveryNumberOfThreads)
 {
   const NormalEquations one = equationsAt(trajectory_);
@@ -279,6 +298,20 @@ TEST_F(NormalEquationsTest, KernelScaleFollowsTheResiduals)
   EXPECT_NEAR(scalesAt(1.0).plane / scalesAt(0.1).plane, 10.0, 1e-3);
   EXPECT_DOUBLE_EQ(scalesAt(0.0).edge, 0.01);
   EXPECT_DOUBLE_EQ(scalesAt(0.0).plane, 0.01);
+}
+
+TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
+{
+  parameters_.kernel_scale = 0.01;
+  Correspondences correspondences;
+  for (const double residual : {0.9, 0.01, 0.02, -0.8, 0.1, 0.7, -0.03}) {
+    Correspondence<PlaneFactor> c;
+    c.factor = {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+    c.point = Eigen::Vector3d(3.0, 4.0, residual);
+    c.weight = 1.0;
+    correspondences.planes.push_back(c);
+  }
+  EXPECT_NEAR(adaptKernelScales(problem_, correspondences).plane, 3.0 * 1.4826 * 0.1, 1e-9);
 }
 
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)

@@ -1,76 +1,19 @@
 // Runs the tools as a user does, and looks at their exit status, messages and files.
 
-#include "support/room_scans.h"
-#include "support/temporary_folder.h"
+#include "tools/odometry_tool_fixture.h"
 
 #include <pcl_floam/io/map_io.h>
-#include <pcl_floam/io/trajectory.h>
-
-#include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
-#include <csignal>
-#include <thread>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace pcl_floam {
 namespace {
 
 using test::contentOf;
-using test::TemporaryFolder;
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string err;
-};
-
-/// A scene with scans along a straight drive, and tools run on it.
-class OdometryTool : public ::testing::Test {
-protected:
-  static constexpr std::size_t kScans = 8;
-  static constexpr double kStep = 0.3;  // m from scan to scan
-
-  OdometryTool()
-  {
-    std::string truth;
-    for (std::size_t i = 0; i < kScans; ++i) {
-      const double x = kStep * static_cast<double>(i);
-      folder.write("scans/" + std::to_string(i) + ".bin", test::roomScan(x, 0.0));
-      truth += "1 0 0 " + std::to_string(x) + " 0 1 0 0 0 0 1 0\n";
-    }
-    folder.write("truth.txt", truth);
-  }
-
-  /// \param arguments for the shell; the present folder is the test's
-  [[nodiscard]] Outcome run(const std::string& tool, const std::string& arguments) const
-  {
-    const std::string command = "cd '" + folder.path().string() + "' && '" + tool + "' " + arguments + " >out 2>err";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contentOf(folder.path() / "out"),
-            contentOf(folder.path() / "err")};
-  }
-  [[nodiscard]] Outcome odometry(const std::string& arguments) const { return run(PCL_FLOAM_ODOMETRY, arguments); }
-  [[nodiscard]] Outcome evaluate(const std::string& arguments) const { return run(PCL_FLOAM_EVALUATE, arguments); }
-
-  [[nodiscard]] Trajectory poses() const { return readTrajectory(folder.path() / "result" / "poses.kitti.txt"); }
-  [[nodiscard]] nlohmann::json summary() const
-  {
-    return nlohmann::json::parse(contentOf(folder.path() / "result" / "summary.json"));
-  }
-  [[nodiscard]] std::ptrdiff_t lines(const std::string& file) const
-  {
-    const std::string content = contentOf(folder.path() / "result" / file);
-    return std::count(content.begin(), content.end(), '\n');
-  }
-
-  TemporaryFolder folder;
-};
+using test::OdometryTool;
+using test::Outcome;
 
 TEST_F(OdometryTool, WritesEveryResult)
 {
@@ -233,49 +176,6 @@ TEST_F(OdometryTool, EveryChoiceRuns)
     EXPECT_EQ(outcome.status, 0) << option << ": " << outcome.err;
     EXPECT_EQ(poses().size(), 3U) << option;
   }
-}
-
-TEST_F(OdometryTool, AFullDiskIsToldOnceAndTheRestIsWritten)
-{
-  if (!std::filesystem::exists("/dev/full")) {
-    GTEST_SKIP() << "no /dev/full here";
-  }
-  std::filesystem::create_directory(folder.path() / "result");
-  std::filesystem::create_symlink("/dev/full", folder.path() / "result" / "poses.tum.txt");
-  const Outcome outcome = odometry("scans -o result --plot none --quiet");
-  EXPECT_EQ(outcome.status, 1);
-  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_NE(outcome.err.find("poses.tum.txt: cannot be written"), std::string::npos) << outcome.err;
-  EXPECT_EQ(summary()["scans"]["processed"], 1);
-  EXPECT_FALSE(loadMap(folder.path() / "result").empty());
-}
-
-TEST_F(OdometryTool, AnInterruptedRunKeepsAllPosesSoFar)
-{
-  for (std::size_t i = kScans; i < 400; ++i) {
-    std::filesystem::create_symlink("0.bin", folder.path() / "scans" / (std::to_string(i) + ".bin"));
-  }
-  const pid_t tool = fork();
-  ASSERT_GE(tool, 0);
-  if (tool == 0) {
-    if (chdir(folder.path().c_str()) != 0) {
-      _exit(98);
-    }
-    execl(PCL_FLOAM_ODOMETRY, "pcl_floam_odometry", "scans", "-o", "result", "--plot", "none", "-q", nullptr);
-    _exit(99);
-  }
-  for (int wait = 0; wait < 500 && lines("poses.kitti.txt") < 3; ++wait) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  }
-  kill(tool, SIGINT);
-  int status = 0;
-  ASSERT_EQ(waitpid(tool, &status, 0), tool);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_GE(poses().size(), 3U);
-  EXPECT_LT(poses().size(), 400U);
-  EXPECT_EQ(poses().size(), summary()["scans"]["processed"]);
-  EXPECT_FALSE(loadMap(folder.path() / "result").empty());
 }
 
 TEST_F(OdometryTool, EvaluateAgreesWithTheOdometrysOwnFigures)

@@ -4,11 +4,14 @@
 
 #include <pcl/PCLPointCloud2.h>
 
+#include <cerrno>
 #include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -19,6 +22,13 @@ public:
   FileError(std::filesystem::path path, const std::string& reason)
       : std::runtime_error(path.string() + ": " + reason), path_(std::move(path))
   {
+  }
+
+  /// An error whose reason the system knows: to be called right after what failed (it reads `errno`).
+  [[nodiscard]] static FileError ofSystem(std::filesystem::path path, const std::string& what)
+  {
+    const int code = errno;
+    return {std::move(path), code == 0 ? what : what + ": " + std::generic_category().message(code)};
   }
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }

@@ -1,0 +1,108 @@
+// Which of the points that could be features become ones.
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/filters/feature_kind.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+namespace pcl_floam::test {
+namespace {
+
+using Cloud = pcl::PointCloud<PointXYZIRT>;
+
+/// Smoothness of the features of each scan line, in the order of the features.
+std::map<int, std::vector<float>> smoothnessByLine(const Cloud& cloud, const std::vector<Feature>& features)
+{
+  std::map<int, std::vector<float>> lines;
+  for (const Feature& feature : features) {
+    lines[cloud[static_cast<std::size_t>(feature.index)].ring].push_back(feature.smoothness);
+  }
+  return lines;
+}
+
+/// The one feature chosen on each line, and all that could have been.
+struct Choice {
+  std::map<int, std::vector<float>> one;
+  std::map<int, std::vector<float>> all;
+};
+
+Choice choiceOf(FeatureKind kind)
+{
+  const Cloud cloud = toCloud(sweepRoom(Room(), Lidar()));
+  FeatureParameters parameters;
+  parameters.sectors = 1;
+  const auto chosen = [&](int edges, int planes) {
+    parameters.edges_per_sector = edges;
+    parameters.planes_per_sector = planes;
+    const FeatureSet features = featuresOf(cloud, parameters);
+    return smoothnessByLine(cloud, kind == FeatureKind::edge ? features.edges : features.planes);
+  };
+  return kind == FeatureKind::edge ? Choice{chosen(1, 0), chosen(100, 0)} : Choice{chosen(0, 1), chosen(0, 1000)};
+}
+
+TEST(FeatureSelection, AnEdgeIsTheSharpestOfItsSector)
+{
+  const Choice choice = choiceOf(FeatureKind::edge);
+  ASSERT_GT(choice.all.size(), 20U);
+  for (const auto& [line, all] : choice.all) {
+    ASSERT_EQ(choice.one.at(line).size(), 1U);
+    EXPECT_EQ(choice.one.at(line).front(), *std::max_element(all.begin(), all.end())) << "line " << line;
+    EXPECT_TRUE(std::is_sorted(all.rbegin(), all.rend())) << "line " << line;
+  }
+}
+
+TEST(FeatureSelection, APlaneIsTheSmoothestOfItsCell)
+{
+  const Choice choice = choiceOf(FeatureKind::plane);
+  ASSERT_GT(choice.all.size(), 20U);
+  for (const auto& [line, all] : choice.all) {
+    ASSERT_EQ(choice.one.at(line).size(), 1U);
+    EXPECT_EQ(choice.one.at(line).front(), *std::min_element(all.begin(), all.end())) << "line " << line;
+  }
+}
+
+TEST(FeatureSelection, NothingSeenAtGrazingIncidenceIsAFeature)
+{
+  Room corridor;
+  corridor.walls = {{-30.0, -2.0, -100.0}, {30.0, 2.0, 100.0}};
+  corridor.furniture.clear();
+  const FeatureSet features = featuresOf(toCloud(sweepRoom(corridor, Lidar())));
+  EXPECT_GT(features.planes.size(), 200U);
+  for (const Feature& plane : features.planes) {
+    // Two points of 900 a turn are 0.0141 of the range apart on a surface seen at 30 degrees.
+    const double distance = std::abs(plane.y) > 1.999F ? 2.0 : 30.0;  // of the wall
+    EXPECT_GT(distance / std::hypot(plane.x, plane.y), 0.45) << plane.x << ' ' << plane.y;
+  }
+}
+
+/// Two walls that meet 30 m ahead; each is turned by \p bend degrees from facing the sensor.
+Cloud bentWall(double bend)
+{
+  const double turned = bend * kPi / 180.0;
+  Cloud cloud;
+  for (int ring = 0; ring < 8; ++ring) {
+    for (int column = 0; column < 200; ++column) {
+      const double azimuth = (100.3 - column) * 0.4 * kPi / 180.0;
+      const double range = 30.0 * std::cos(turned) / std::cos(std::abs(azimuth) - turned);
+      cloud.push_back(PointXYZIRT(static_cast<float>(range * std::cos(azimuth)),
+                                  static_cast<float>(range * std::sin(azimuth)), 0.5F * static_cast<float>(ring), 1.0F,
+                                  static_cast<std::uint16_t>(ring), 5e-4F * static_cast<float>(column)));
+    }
+  }
+  return cloud;
+}
+
+TEST(FeatureSelection, AGentleBendIsNoEdgeHoweverFarApartThePointsAre)
+{
+  FeatureParameters any_bend;
+  any_bend.edge_bend = 0.0F;
+  EXPECT_GE(featuresOf(bentWall(15.0), any_bend).edges.size(), 8U);  // rough enough, for how far away it is
+  EXPECT_TRUE(featuresOf(bentWall(15.0)).edges.empty());
+  EXPECT_GE(featuresOf(bentWall(45.0)).edges.size(), 8U);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test

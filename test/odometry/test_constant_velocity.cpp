@@ -1,0 +1,92 @@
+// The clock of the scans, and what is predicted from it.
+#include "odometry/constant_velocity.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace pcl_floam {
+namespace {
+
+/// A clock that has seen scans every 0.1 s up to the time 100.
+ScanClock steadyClock()
+{
+  ScanClock clock;
+  for (int i = -5; i <= 0; ++i) {
+    clock.tick(100.0 + 0.1 * i);
+  }
+  return clock;
+}
+
+TEST(ScanClock, CountsPeriods)
+{
+  ScanClock clock = steadyClock();
+  EXPECT_NEAR(clock.period(), 0.1, 1e-9);
+  EXPECT_NEAR(clock.tick(100.1), 1.0, 1e-9);
+  EXPECT_NEAR(clock.tick(100.4), 3.0, 1e-9);
+  EXPECT_EQ(clock.tick(std::nullopt), 1.0);
+  EXPECT_EQ(clock.tick(std::numeric_limits<double>::quiet_NaN()), 1.0);
+}
+
+TEST(ScanClock, StampsThatDoNotAdvanceAreNoTime)
+{
+  ScanClock clock = steadyClock();
+  EXPECT_EQ(clock.tick(100.0), 0.0);
+  EXPECT_EQ(clock.tick(100.0 + 1e-7), 0.0);  // a motion divided by it would be no velocity
+  EXPECT_EQ(clock.tick(99.8), 0.0);
+  EXPECT_NEAR(clock.tick(99.9), 1.0, 1e-9);
+}
+
+TEST(ScanClock, AClockThatWasSetTellsNothing)
+{
+  for (const double jump : {3600.0, -3600.0, 1e300, -1e300}) {
+    ScanClock clock = steadyClock();
+    EXPECT_EQ(clock.tick(100.0 + jump), 1.0) << jump;
+    EXPECT_NEAR(clock.period(), 0.1, 1e-9) << jump;
+  }
+  ScanClock clock;
+  clock.tick(-std::numeric_limits<double>::max());
+  EXPECT_EQ(clock.tick(std::numeric_limits<double>::max()), 1.0);  // their difference is not finite
+}
+
+TEST(ScanClock, AWrongFirstPeriodIsForgotten)
+{
+  ScanClock clock;
+  clock.tick(0.0);
+  clock.tick(1e-7);
+  for (int i = 1; i <= 4; ++i) {
+    clock.tick(0.1 * i);
+  }
+  EXPECT_NEAR(clock.period(), 0.1, 1e-6);
+  EXPECT_NEAR(clock.tick(0.7), 3.0, 1e-5);
+}
+
+TEST(ConstantVelocity, FollowsTheTwistForAsLongAsItIsWorthAnything)
+{
+  ConstantVelocity velocity;
+  EXPECT_FALSE(velocity.isKnown());
+  const Vector6 twist = (Vector6() << 1.0, 0.0, 0.0, 0.0, 0.0, 0.1).finished();
+  velocity.set(twist);
+  EXPECT_TRUE(velocity.isKnown());
+  EXPECT_LT((log(velocity.motion(2.0)) - 2.0 * twist).norm(), 1e-12);
+  EXPECT_LT((log(velocity.motion(50.0)) - 10.0 * twist).norm(), 1e-12);
+}
+
+TEST(PredictionError, BoundsTheNextOneAndFades)
+{
+  PredictionError error;
+  for (int i = 0; i < 50; ++i) {
+    error.observe(SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.1, 0.0, 0.0)), 10.0);
+  }
+  EXPECT_NEAR(error.bound(1.0), 0.3, 1e-3);
+  EXPECT_NEAR(error.bound(2.0), 0.6, 1e-3);
+  EXPECT_EQ(error.bound(1e6), 4.0);
+  for (int i = 0; i < 50; ++i) {
+    error.observe(SE3(), 10.0);
+  }
+  EXPECT_LT(error.bound(1.0), 0.01);
+}
+
+}  // namespace
+}  // namespace pcl_floam
