@@ -32,6 +32,14 @@ std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t mo
   return taken;
 }
 
+std::vector<double> times(double factor, std::vector<double> weights)
+{
+  for (double& weight : weights) {
+    weight *= factor;
+  }
+  return weights;
+}
+
 /// One registration in progress.
 class PoseEstimation {
 public:
@@ -44,8 +52,9 @@ public:
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
-        edge_weights_(
-            smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization)),
+        edge_weights_(times(
+            parameters.edge_weight,
+            smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization))),
         plane_weights_(
             smoothnessWeights(source.planes, FeatureKind::plane, parameters.weights, parameters.weight_normalization))
   {
