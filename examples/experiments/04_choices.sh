@@ -34,6 +34,7 @@ choices = [
     ("kernel: Huber", ["--kernel", "huber"]),
     ("kernel: Geman-McClure", ["--kernel", "geman-mcclure"]),
     ("no edges", ["--edges-per-sector", "0"]),
+    ("an edge counts as a plane", ["--edge-weight", "1"]),
     ("every scan a keyframe", ["--keyframe-translation", "0", "--keyframe-rotation", "0"]),
     ("planes from 10 neighbours", ["--plane-neighbors", "10"]),
     ("line ratio 3 (LOAM's)", ["--line-ratio", "3"]),

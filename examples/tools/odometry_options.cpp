@@ -167,6 +167,9 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
              {"cauchy", RobustKernel::cauchy},
              {"geman-mcclure", RobustKernel::geman_mcclure}},
             "robust kernel on the residuals");
+  app.add_flag_callback(
+      "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
+  addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
   addNumber(app, "--kernel-scale", p.kernel_scale, "M", "smallest scale of the kernel");
   addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");
   addNumber(app, "--translation-epsilon", p.translation_epsilon, "M", "converged at a step smaller than this");

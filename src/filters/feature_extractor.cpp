@@ -34,8 +34,8 @@ void rate(std::size_t count, const float* sigma, const std::int32_t* unfit, floa
 {
   for (std::size_t n = 0; n < count; ++n) {
     const bool fit = unfit[n] == 0;
-    sharpness[n] = fit & (sigma[n] > edge_threshold) ? sigma[n] : 0.0F;
-    flatness[n] = fit & (sigma[n] < plane_threshold) ? sigma[n] : kNeverFlat;
+    sharpness[n] = fit && sigma[n] > edge_threshold ? sigma[n] : 0.0F;
+    flatness[n] = fit && sigma[n] < plane_threshold ? sigma[n] : kNeverFlat;
   }
 }
 

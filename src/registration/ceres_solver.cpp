@@ -63,9 +63,16 @@ Eigen::Matrix<double, 3, 6> motionDerivative(const Eigen::Vector3d& rotated, con
 template <typename Factor>
 class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6, 6> {
 public:
-  PerturbationCost(const Correspondence<Factor>& correspondence, double pose_share, double twist_share)
-      : factor_(correspondence.factor), point_(correspondence.point), share_{pose_share, twist_share}
+  PerturbationCost(const Correspondence<Factor>& correspondence, double pose_share, double twist_share,
+                   const DegreesOfFreedom& locked)
+      : factor_(correspondence.factor),
+        point_(correspondence.point),
+        share_{pose_share, twist_share},
+        free_(Vector6::Ones())
   {
+    for (std::size_t i = 0; i < locked.size(); ++i) {
+      free_[static_cast<int>(i)] = locked[i] ? 0.0 : 1.0;
+    }
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
@@ -80,7 +87,7 @@ public:
     for (int block = 0; jacobians != nullptr && block < 2; ++block) {
       if (jacobians[block] != nullptr) {
         const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
-            share_[block] * factor_.derivative() * motionDerivative(rotated, phi);
+            share_[block] * factor_.derivative() * motionDerivative(rotated, phi) * free_.asDiagonal();
         for (int row = 0; row < Factor::kResiduals; ++row) {
           Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[block] + 6L * row) = jacobian.row(row);
         }
@@ -93,6 +100,7 @@ private:
   Factor factor_;
   Eigen::Vector3d point_;  ///< without perturbation
   double share_[2];        ///< of the pose's and of the twist's perturbation
+  Vector6 free_;           ///< 0 for a locked degree of freedom, else 1
 };
 
 /// The motion prior as residuals: its information's root times the distance from it.
@@ -121,13 +129,14 @@ private:
 
 template <typename Factor>
 void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, const SweepModel& model,
-                  ceres::LossFunction* loss, SweepStep& step, ceres::Problem& ceres_problem)
+                  const DegreesOfFreedom& locked, ceres::LossFunction* loss, SweepStep& step,
+                  ceres::Problem& ceres_problem)
 {
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
       const bool follows = model.freedom == SweepFreedom::follows_pose;
       const double pose_share = follows ? 1.0 + model.sweep_per_motion * c.since_reference : 1.0;
-      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, pose_share, c.since_reference),
+      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, pose_share, c.since_reference, locked),
                                      new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP),
                                      step.pose.data(), step.twist.data());
     }
@@ -158,8 +167,8 @@ SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& m
   } else {
     ceres_problem.SetParameterBlockConstant(perturbation.twist.data());
   }
-  addResiduals(correspondences.edges, model, edge_loss.get(), perturbation, ceres_problem);
-  addResiduals(correspondences.planes, model, plane_loss.get(), perturbation, ceres_problem);
+  addResiduals(correspondences.edges, model, problem.parameters.locked, edge_loss.get(), perturbation, ceres_problem);
+  addResiduals(correspondences.planes, model, problem.parameters.locked, plane_loss.get(), perturbation, ceres_problem);
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

@@ -106,6 +106,7 @@ private:
                         correspondences_);
     const KernelScales scales = adaptKernelScales(problem_, correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
+    lock(problem_.parameters.locked, equations_);
     ++report_.iterations;
     if (equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
       if (stride_ > 1) {
@@ -187,7 +188,29 @@ private:
                              ? FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).poseCovariance()
                              : analysis.covariance();
     report_.weak_directions = analysis.weakDirections();
+    clearLocked();
     return report_;
+  }
+
+  /// Locked degrees of freedom are known, not weak.
+  void clearLocked()
+  {
+    const DegreesOfFreedom& locked = problem_.parameters.locked;
+    const auto isLocked = [&locked](const WeakDirection& weak) {
+      double part = 0.0;
+      for (std::size_t i = 0; i < locked.size(); ++i) {
+        part += locked[i] ? weak.direction[static_cast<int>(i)] * weak.direction[static_cast<int>(i)] : 0.0;
+      }
+      return part > 0.5;
+    };
+    auto& weak = report_.weak_directions;
+    weak.erase(std::remove_if(weak.begin(), weak.end(), isLocked), weak.end());
+    for (int i = 0; i < 6; ++i) {
+      if (locked[static_cast<std::size_t>(i)]) {
+        report_.covariance.row(i).setZero();
+        report_.covariance.col(i).setZero();
+      }
+    }
   }
 
   const FeatureSet& source_;

@@ -185,4 +185,18 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
   return result;
 }
 
+void lock(const DegreesOfFreedom& locked, NormalEquations& equations)
+{
+  for (int i = 0; i < 6; ++i) {
+    if (locked[static_cast<std::size_t>(i)]) {
+      for (Matrix6* matrix : {&equations.information, &equations.coupling, &equations.twist_information}) {
+        matrix->row(i).setZero();
+        matrix->col(i).setZero();
+      }
+      equations.gradient[i] = 0.0;
+      equations.twist_gradient[i] = 0.0;
+    }
+  }
+}
+
 }  // namespace pcl_floam

@@ -44,4 +44,7 @@ struct NormalEquations {
 [[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem,
                                                    const Correspondences& correspondences, const KernelScales& scales);
 
+/// Takes out all that the equations say about locked degrees of freedom.
+void lock(const DegreesOfFreedom& locked, NormalEquations& equations);
+
 }  // namespace pcl_floam

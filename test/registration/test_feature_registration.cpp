@@ -107,6 +107,28 @@ TEST_F(FeatureRegistrationTest, SolversAgree)
   EXPECT_FALSE(sameBits(gauss_newton.target_T_source, ceres.target_T_source));
 }
 
+TEST_F(FeatureRegistrationTest, LockedDegreesOfFreedomKeepTheGuess)
+{
+  mapRoom();
+  parameters_.locked = kPlanarMotion;
+  const SE3 planar = exp((Vector6() << 0.2, -0.1, 0.0, 0.0, 0.0, -0.03).finished());
+  const SE3 wrong_height(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.05));
+  for (const SolverKind solver : {SolverKind::gauss_newton, SolverKind::ceres}) {
+    parameters_.solver = solver;
+    EXPECT_LT(distance(run(planar * truth_).target_T_source, truth_), 0.01) << toString(solver);
+
+    const RegistrationReport report = run(wrong_height * planar * truth_);
+    const SE3 error = report.target_T_source * truth_.inverse();
+    EXPECT_TRUE(report.hasConverged());
+    EXPECT_NEAR(report.target_T_source.translation.z(), truth_.translation.z() + 0.05, 1e-12) << toString(solver);
+    EXPECT_LT((error.rotation.col(2) - Eigen::Vector3d::UnitZ()).norm(), 1e-12) << toString(solver);
+    EXPECT_LT(error.translation.head<2>().norm(), 0.02) << toString(solver);
+    EXPECT_TRUE(report.weak_directions.empty());
+    EXPECT_EQ(report.covariance(2, 2), 0.0);
+    EXPECT_GT(report.covariance(0, 0), 0.0);
+  }
+}
+
 TEST_F(FeatureRegistrationTest, SameBitsForEveryNumberOfThreads)
 {
   mapRoom();

@@ -2,6 +2,7 @@
 /// Settings of the pose estimation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace pcl_floam {
@@ -28,6 +29,12 @@ enum class SolverKind : std::uint8_t { gauss_newton, ceres };
 [[nodiscard]] const char* toString(WeightNormalization normalization);
 [[nodiscard]] const char* toString(RobustKernel kernel);
 [[nodiscard]] const char* toString(SolverKind solver);
+
+/// Degrees of freedom of a pose: translation along x, y, z, then rotation about x, y, z of the target's axes.
+using DegreesOfFreedom = std::array<bool, 6>;
+
+/// \ref RegistrationParameters::locked for a robot on level ground: height, roll and pitch.
+inline constexpr DegreesOfFreedom kPlanarMotion = {false, false, true, true, true, false};
 
 /// Settings of \ref EdgePlaneRegistration.
 struct RegistrationParameters {
@@ -57,6 +64,8 @@ struct RegistrationParameters {
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
   /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.
   double weak_threshold = 1e-4;
+  /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero.
+  DegreesOfFreedom locked = {};
 };
 
 /// \throws std::invalid_argument naming the first setting that is out of its range.
