@@ -2,6 +2,8 @@
 /// Hot loops compiled for more than one instruction set, of which the processor's best is taken at run time.
 #pragma once
 
+#include <cstddef>  // tells which C library it is
+
 // Sanitizers can't look into a choice that the loader makes before they are set up.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define PCL_FLOAM_SANITIZED
@@ -12,8 +14,8 @@
 #endif
 
 /// Before a function: a version for AVX2 beside the plain one. Without fused multiplications, so that both give the
-/// same bits.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+/// same bits. GCC with glibc, whose loader makes the choice.
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(PCL_FLOAM_SANITIZED)
 #define PCL_FLOAM_MULTI_VERSION __attribute__((target_clones("default", "avx2")))
 #else
