@@ -15,7 +15,7 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr float kNeverFlat = std::numeric_limits<float>::infinity();
+constexpr float kNeverFlat = std::numeric_limits<float>::max();
 
 /// Scratch memory for one scan line after another.
 struct LineScratch {
@@ -23,7 +23,7 @@ struct LineScratch {
   std::vector<float> sigma;
   std::vector<std::int32_t> unfit;
   std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
-  std::vector<float> flatness;   ///< sigma of the points that may be planes, infinity elsewhere
+  std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
   std::vector<int> candidates;
 };
 
@@ -231,9 +231,9 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
   std::vector<FeatureSet> found(parts);
   features.clear();
   if (parts > 0) {
-    found.front() = std::move(features);  // its memory
+    std::swap(found.front(), features);  // its memory is used again
   }
-#pragma omp parallel for num_threads(threads) schedule(static, 1)
+#pragma omp parallel for num_threads(std::max(threads, 1)) schedule(static, 1)
   for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
     const auto part = static_cast<std::size_t>(p);
     LineScratch scratch;
@@ -242,11 +242,10 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
       selector.select(m);
     }
   }
-  for (std::size_t part = 0; part < parts; ++part) {
-    if (part == 0) {
-      features = std::move(found.front());
-      continue;
-    }
+  if (parts > 0) {
+    std::swap(found.front(), features);
+  }
+  for (std::size_t part = 1; part < parts; ++part) {
     features.edges.insert(features.edges.end(), found[part].edges.begin(), found[part].edges.end());
     features.planes.insert(features.planes.end(), found[part].planes.begin(), found[part].planes.end());
   }
