@@ -169,6 +169,7 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
             "robust kernel on the residuals");
   app.add_flag_callback(
       "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
+  addNumber(app, "--max-features", p.max_features, "N", "most features of each kind that are registered");
   addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
   addNumber(app, "--kernel-scale", p.kernel_scale, "M", "smallest scale of the kernel");
   addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");

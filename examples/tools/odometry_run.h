@@ -47,7 +47,8 @@ struct ScanRange {
 /// \throws std::invalid_argument if the folder has no scan of that number.
 [[nodiscard]] ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder);
 
-/// Where `times.txt` does not rise; empty if it does. The odometry takes such scans as if no time had passed.
+/// Where `times.txt` does not rise; empty if it does. The odometry takes such scans as if no time had
+/// passed, or one period where the clock was set by a hundred periods or more.
 [[nodiscard]] std::string timesProblem(const ScanSource& scans, ScanRange range);
 
 /// Tracks scan after scan and writes what comes of each at once. Scans that cannot be read or tracked are told and

@@ -43,6 +43,7 @@ Json registrationJson(const RegistrationParameters& p)
   return {{"solver", toString(p.solver)},
           {"weights", toString(p.weights)},
           {"weight_normalization", toString(p.weight_normalization)},
+          {"edge_weight", p.edge_weight},
           {"kernel", toString(p.kernel)},
           {"kernel_scale_m", p.kernel_scale},
           {"max_iterations", p.max_iterations},
@@ -54,8 +55,10 @@ Json registrationJson(const RegistrationParameters& p)
           {"line_ratio", p.line_ratio},
           {"plane_ratio", p.plane_ratio},
           {"plane_spread", p.plane_spread},
+          {"max_features", p.max_features},
           {"min_correspondences", p.min_correspondences},
-          {"weak_threshold", p.weak_threshold}};
+          {"weak_threshold", p.weak_threshold},
+          {"locked_x_y_z_rx_ry_rz", p.locked}};
 }
 
 Json mapJson(const OdometryParameters& p)

@@ -75,7 +75,6 @@ SeenScan readScan(const ScanSource& scans, std::size_t number)
   pcl::PCLPointCloud2 blob;
   scans.read(number, blob);
   SeenScan scan;
-  scan.points = pcl::make_shared<Cloud>();
   pcl::fromPCLPointCloud2(blob, *scan.points);
   const FeatureSet features = scanLineFeatures(viewOf(blob), SensorModel(), FeatureParameters());
   scan.edges = cloudOf(features.edges);
@@ -137,7 +136,9 @@ private:
     if (result_.refresh()) {
       replay_.setSize(result_.poses().size());
       scene_.showMap(result_);
-      shown_.reset();
+      if (shown_ && *shown_ < result_.poses().size()) {  // the scan and the camera stay as they are
+        scene_.showPath(result_.poses(), *shown_);
+      }
     }
   }
 
@@ -161,15 +162,19 @@ private:
   void showScan(std::size_t pose, const SE3& world_T_sensor)
   {
     const std::size_t number = options_.from + pose;
-    if (!scans_ || number >= scans_->size()) {
+    if (!scans_) {
       return;
     }
+    problem_.clear();
+    SeenScan scan;
     try {
-      scene_.showScan(readScan(*scans_, number), world_T_sensor);
-      problem_.clear();
+      if (number < scans_->size()) {
+        scan = readScan(*scans_, number);
+      }
     } catch (const FileError& error) {
       problem_ = ", scan not shown: " + std::string(error.what());
     }
+    scene_.showScan(scan, world_T_sensor);
   }
 
   const ViewOptions& options_;

@@ -15,9 +15,9 @@ namespace pcl_floam::viewer {
 
 /// A scan in its sensor's frame.
 struct SeenScan {
-  Cloud::Ptr points;
-  Cloud::Ptr edges;
-  Cloud::Ptr planes;
+  Cloud::Ptr points = pcl::make_shared<Cloud>();
+  Cloud::Ptr edges = pcl::make_shared<Cloud>();
+  Cloud::Ptr planes = pcl::make_shared<Cloud>();
 };
 
 class Scene {

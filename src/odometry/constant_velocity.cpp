@@ -39,11 +39,11 @@ double ScanClock::tick(std::optional<double> stamp)
   const double usual = period();
   last_stamp_ = stamp;
   const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
+  if (elapsed > 0.0 && std::isfinite(elapsed)) {
+    remember(elapsed);  // in any case: the period may have been taken from stamps that were wrong
+  }
   if (!clock_was_set && elapsed <= kNoTime * usual) {
     return 0.0;
-  }
-  if (elapsed > 0.0 && std::isfinite(elapsed)) {
-    remember(elapsed);  // even then: the period may have been taken from stamps that were wrong
   }
   return clock_was_set ? 1.0 : elapsed / period();
 }

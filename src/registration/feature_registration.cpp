@@ -175,6 +175,9 @@ private:
     if (!pose().isFinite()) {
       report_.termination = Termination::degenerate;
     }
+    if (report_.hasConverged() && equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
+      report_.termination = Termination::too_few_correspondences;  // the last iteration found that a quarter is too few
+    }
     if (!report_.hasConverged() || !(equations_.weight > 0.0)) {
       return report_;
     }

@@ -13,19 +13,19 @@ int main(int argc, char** argv)
   const ScanSequence sequences[] = {
       realDrive(data != nullptr ? data : PCL_FLOAM_DEFAULT_DATA), simulatedSequence("urban", "hdl64", kScans),
       simulatedSequence("warehouse", "vlp16", kScans), simulatedSequence("urban", "os128", kScans)};
-  const ScanSequence* longest = nullptr;
+  const ScanSequence* first = nullptr;
   for (const ScanSequence& sequence : sequences) {
     if (sequence.scans.empty()) {
       benchmark::AddCustomContext("left out", sequence.name);
       continue;
     }
-    longest = longest == nullptr ? &sequence : longest;
+    first = first == nullptr ? &sequence : first;
     registerPipeline(sequence, 1);
     registerPipeline(sequence, 2);
     registerStages(sequence);
   }
-  if (longest != nullptr) {
-    registerGrowth(*longest);
+  if (first != nullptr) {
+    registerGrowth(*first);
   }
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) {

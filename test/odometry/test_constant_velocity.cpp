@@ -62,6 +62,21 @@ TEST(ScanClock, AWrongFirstPeriodIsForgotten)
   EXPECT_NEAR(clock.tick(0.7), 3.0, 1e-5);
 }
 
+TEST(ScanClock, APeriodThatWasTooLongIsForgotten)
+{
+  for (const auto& [first, second] : {std::pair<double, double>{0.0, 1.7e9}, {0.1, 60.1}}) {
+    ScanClock clock;
+    clock.tick(0.0);
+    clock.tick(first);
+    clock.tick(second);
+    for (int i = 1; i <= 6; ++i) {
+      clock.tick(second + 0.1 * i);
+    }
+    EXPECT_NEAR(clock.period(), 0.1, 1e-6) << second;
+    EXPECT_NEAR(clock.tick(second + 0.9), 3.0, 1e-5) << second;
+  }
+}
+
 TEST(ConstantVelocity, FollowsTheTwistForAsLongAsItIsWorthAnything)
 {
   ConstantVelocity velocity;

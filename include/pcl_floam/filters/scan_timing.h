@@ -13,7 +13,7 @@ namespace pcl_floam {
 /// Where the points' times come from.
 enum class ScanTimingSource : std::uint8_t {
   automatic,   ///< the time field, else the organised columns, else the azimuth
-  time_field,  ///< a field `time`, `t`, `timestamp`, ...: s, us or ns, relative or absolute
+  time_field,  ///< a field `time`, `t`, `timestamp`, ...: s, ms, us or ns, relative or absolute
   columns,     ///< the columns of an organised cloud: one column is one firing
   azimuth,     ///< the azimuth, with the direction of rotation measured from the firing order
   none         ///< all points at the same instant: the scan is compensated already, or not rotating

@@ -64,7 +64,9 @@ struct RegistrationParameters {
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
   /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.
   double weak_threshold = 1e-4;
-  /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero.
+  /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero. For features against a
+  /// map: the odometry, localisation, `setInputTargetMap`; clouds are registered in all of them. Exact for
+  /// \ref kPlanarMotion, for all translations and for all rotations; else to second order of the correction.
   DegreesOfFreedom locked = {};
 };
 
