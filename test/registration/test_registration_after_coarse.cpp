@@ -126,6 +126,9 @@ TEST_F(FineStage, AfterSampleConsensusInitialAlignment)
 
 TEST_F(FineStage, AfterPpfRegistration)
 {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "PCL 1.13's PPFRegistration reads one number past the end of its votes";
+#endif
   pcl::PPFEstimation<PointN, PointN, pcl::PPFSignature> estimation;
   estimation.setInputCloud(few_of_source);
   estimation.setInputNormals(few_of_source);
