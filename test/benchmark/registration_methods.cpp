@@ -1,8 +1,9 @@
 #include "benchmark/registration_methods.h"
 
+#include "support/cloud_normals.h"
+
 #include <pcl_floam/registration/edge_plane_registration.h>
 
-#include <pcl/features/normal_3d.h>
 #include <pcl/registration/gicp.h>
 #include <pcl/registration/icp.h>
 #include <pcl/registration/ndt.h>
@@ -38,26 +39,13 @@ SE3 runIcp(const CloudPair& pair, const SE3& guess)
   return align<decltype(icp), Point>(icp, pair.source, pair.target, guess);
 }
 
-pcl::PointCloud<PointN>::Ptr withNormals(const Cloud::Ptr& cloud)
-{
-  auto result = pcl::make_shared<pcl::PointCloud<PointN>>();
-  pcl::copyPointCloud(*cloud, *result);
-  pcl::NormalEstimation<Point, PointN> estimation;
-  estimation.setInputCloud(cloud);
-  estimation.setKSearch(20);
-  estimation.compute(*result);
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    (*result)[i].getVector3fMap() = (*cloud)[i].getVector3fMap();
-  }
-  return result;
-}
-
 SE3 runPointToPlane(const CloudPair& pair, const SE3& guess)
 {
   pcl::IterativeClosestPointWithNormals<PointN, PointN> icp;
   icp.setMaximumIterations(kIterations);
   icp.setTransformationEpsilon(std::pow(1e-5 * pair.extent, 2));
-  return align<decltype(icp), PointN>(icp, withNormals(pair.source), withNormals(pair.target), guess);
+  return align<decltype(icp), PointN>(icp, test::withNormals<PointN>(pair.source),
+                                      test::withNormals<PointN>(pair.target), guess);
 }
 
 SE3 runGicp(const CloudPair& pair, const SE3& guess)

@@ -73,7 +73,9 @@ std::vector<Eigen::Vector3d> planeQueries(const StageInput& input)
 
 void search(const NeighborSearch& layer, const std::vector<Eigen::Vector3d>& queries, std::vector<Neighbors>& found)
 {
-  layer.nearestOfEach(queries.data(), queries.size(), 5, 1.0, found.data());
+  const RegistrationParameters defaults;
+  layer.nearestOfEach(queries.data(), queries.size(), defaults.plane_neighbors, defaults.max_neighbor_distance,
+                      found.data());
   gb::DoNotOptimize(found.data());
 }
 

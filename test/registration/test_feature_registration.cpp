@@ -129,6 +129,19 @@ TEST_F(FeatureRegistrationTest, LockedDegreesOfFreedomKeepTheGuess)
   }
 }
 
+TEST_F(FeatureRegistrationTest, TooFewCorrespondencesInTheOnlyIterationAreNoSuccess)
+{
+  mapRoom();
+  parameters_.max_iterations = 1;
+  // Enough features that the first iteration looks at a part of them only.
+  ASSERT_GE(scan_.edges.size() + scan_.planes.size(), 1000U);
+  const SE3 guess(Eigen::Matrix3d::Identity(), Eigen::Vector3d(200.0, 0.0, 0.0));
+  const RegistrationReport report = run(guess);
+  EXPECT_EQ(report.termination, Termination::too_few_correspondences);
+  EXPECT_FALSE(report.hasConverged());
+  EXPECT_TRUE(sameBits(report.target_T_source, guess));
+}
+
 TEST_F(FeatureRegistrationTest, SameBitsForEveryNumberOfThreads)
 {
   mapRoom();

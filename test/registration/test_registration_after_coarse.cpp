@@ -1,11 +1,11 @@
 // As the fine stage after PCL's registrations that need no guess, and before its bundle of all pairs.
+#include "support/cloud_normals.h"
 #include "support/registration_clouds.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
 
 #include <pcl/common/transforms.h>
 #include <pcl/features/fpfh.h>
-#include <pcl/features/normal_3d.h>
 #include <pcl/features/ppf.h>
 #include <pcl/registration/ia_fpcs.h>
 #include <pcl/registration/ia_ransac.h>
@@ -27,19 +27,6 @@ const Eigen::Matrix4f kFarMotion =
     (Eigen::Translation3f(1.5F, -0.7F, 0.4F) * Eigen::AngleAxisf(2.6F, Eigen::Vector3f(0.3F, 0.5F, 0.8F).normalized()))
         .matrix();
 
-CloudN::Ptr withNormals(const Cloud::Ptr& cloud)
-{
-  auto result = pcl::make_shared<CloudN>();
-  pcl::NormalEstimation<Point, PointN> estimation;
-  estimation.setInputCloud(cloud);
-  estimation.setKSearch(20);
-  estimation.compute(*result);
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    (*result)[i].getVector3fMap() = (*cloud)[i].getVector3fMap();
-  }
-  return result;
-}
-
 /// Every n-th point: searches without a guess go through all pairs of points.
 CloudN::Ptr everyNth(const CloudN& cloud, std::size_t n)
 {
@@ -53,10 +40,10 @@ CloudN::Ptr everyNth(const CloudN& cloud, std::size_t n)
 /// Two samplings of the object, far apart. Their few points are for the coarse stage, all of them for ours.
 class FineStage : public ::testing::Test {
 protected:
-  FineStage() : source(pcl::make_shared<CloudN>()), target(withNormals(sampledObject(1, 1.0)))
+  FineStage() : source(pcl::make_shared<CloudN>()), target(withNormals<PointN>(sampledObject(1, 1.0)))
   {
     const Eigen::Matrix4f back = kFarMotion.inverse();
-    pcl::transformPointCloudWithNormals(*withNormals(sampledObject(2, 1.0)), *source, back);
+    pcl::transformPointCloudWithNormals(*withNormals<PointN>(sampledObject(2, 1.0)), *source, back);
     few_of_source = everyNth(*source, 28);
     few_of_target = everyNth(*target, 28);
   }
