@@ -145,6 +145,7 @@ void addFeatureOptions(CLI::App& app, FeatureParameters& p)
   addNumber(app, "--min-range", p.min_range, "M", "nearer points are left out");
   addNumber(app, "--max-range", p.max_range, "M", "farther points are left out");
   addNumber(app, "--edge-threshold", p.edge_threshold, "M", "smoothness that an edge must exceed");
+  addNumber(app, "--edge-noise-ratio", p.edge_noise_ratio, "RATIO", "and relative to the median of its scan line");
   addNumber(app, "--edge-bend", p.edge_bend, "RATIO", "and relative to the points' spacing");
   addNumber(app, "--plane-threshold", p.plane_threshold, "M", "smoothness that a plane must not exceed");
 }
@@ -171,6 +172,8 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
       "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
   addNumber(app, "--max-features", p.max_features, "N", "most features of each kind that are registered");
   addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
+  addNumber(app, "--plane-scatter", p.plane_scatter, "RATIO",
+            "a plane whose map points scatter so many times more\nthan usual counts half; 0: all count alike");
   addNumber(app, "--kernel-scale", p.kernel_scale, "M", "smallest scale of the kernel");
   addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");
   addNumber(app, "--translation-epsilon", p.translation_epsilon, "M", "converged at a step smaller than this");

@@ -34,6 +34,7 @@ Json featuresJson(const FeatureParameters& p)
           {"min_range_m", shortest(p.min_range)},
           {"max_range_m", shortest(p.max_range)},
           {"edge_threshold_m", shortest(p.edge_threshold)},
+          {"edge_noise_ratio", shortest(p.edge_noise_ratio)},
           {"edge_bend", shortest(p.edge_bend)},
           {"plane_threshold_m", shortest(p.plane_threshold)}};
 }
@@ -44,6 +45,7 @@ Json registrationJson(const RegistrationParameters& p)
           {"weights", toString(p.weights)},
           {"weight_normalization", toString(p.weight_normalization)},
           {"edge_weight", p.edge_weight},
+          {"plane_scatter", p.plane_scatter},
           {"kernel", toString(p.kernel)},
           {"kernel_scale_m", p.kernel_scale},
           {"max_iterations", p.max_iterations},

@@ -25,6 +25,7 @@ struct LineScratch {
   std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
   std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
   std::vector<int> candidates;
+  std::vector<float> sample;  ///< of sigma
 };
 
 /// Sorts a line's points into those sharp enough for edges and those smooth enough for planes.
@@ -80,8 +81,8 @@ public:
     markNotAsked();
     line_.sharpness.resize(line_.sigma.size());
     line_.flatness.resize(line_.sigma.size());
-    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), parameters_.edge_threshold,
-         parameters_.plane_threshold, line_.sharpness.data(), line_.flatness.data());
+    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), edgeThreshold(), parameters_.plane_threshold,
+         line_.sharpness.data(), line_.flatness.data());
 
     const int begin = parameters_.neighbors_each_side;
     const int length = line_.points.size() - 2 * begin;
@@ -101,6 +102,29 @@ private:
         line_.unfit[n] = 1;
       }
     }
+  }
+
+  /// Above the noise of this line.
+  [[nodiscard]] float edgeThreshold()
+  {
+    if (parameters_.smoothness != SmoothnessKind::vector_sum) {
+      return parameters_.edge_threshold;
+    }
+    constexpr std::size_t kSample = 128;  // enough for a median, and cheap
+    const auto ends = static_cast<std::size_t>(parameters_.neighbors_each_side);
+    const std::size_t step = std::max<std::size_t>(1, line_.sigma.size() / kSample);
+    line_.sample.clear();
+    for (std::size_t n = ends; n + ends < line_.sigma.size(); n += step) {
+      if (line_.unfit[n] == 0) {
+        line_.sample.push_back(line_.sigma[n]);
+      }
+    }
+    if (line_.sample.empty()) {
+      return parameters_.edge_threshold;
+    }
+    const auto middle = line_.sample.begin() + static_cast<std::ptrdiff_t>(line_.sample.size() / 2);
+    std::nth_element(line_.sample.begin(), middle, line_.sample.end());
+    return std::max(parameters_.edge_threshold, parameters_.edge_noise_ratio * *middle);
   }
 
   /// The points of highest smoothness, at least a neighbourhood apart.
@@ -217,6 +241,7 @@ void validate(const FeatureParameters& p)
   check.atLeast("min_range", p.min_range, 0.0);
   check.above("max_range", p.max_range, p.min_range);
   check.atLeast("edge_threshold", p.edge_threshold, 0.0);
+  check.atLeast("edge_noise_ratio", p.edge_noise_ratio, 0.0);
   check.range("edge_bend", p.edge_bend, 0.0, 1.0);
   check.above("plane_threshold", p.plane_threshold, 0.0);
 }

@@ -96,7 +96,7 @@ MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twis
   // The floors let a motion begin after a long rest.
   constexpr double kLeastChange = 0.01;  // m per period
   constexpr double kLeastTurn = 0.005;   // rad per period
-  constexpr double kPoseSpread = 0.3;    // m
+  constexpr double kPoseSpread = 0.07;   // m
   constexpr double kPoseRotation = 0.1;  // rad
   const auto spread = [&](double pose, double noise) {
     MotionPrior::Spread result;

@@ -1,6 +1,7 @@
 #include "registration/correspondences.h"
 
 #include "registration/line_plane_fit.h"
+#include "registration/scatter_weights.h"
 
 #include <algorithm>
 #include <array>
@@ -19,6 +20,16 @@ EdgeFactor makeFactor(const LineFit& line, const Eigen::Vector3d& query)
 PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
 {
   return {query + plane.center, plane.normal};
+}
+
+double varianceOf(const LineFit& /*line*/)
+{
+  return 0.0;
+}
+
+double varianceOf(const PlaneFit& plane)
+{
+  return plane.variance;
 }
 
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
@@ -62,6 +73,7 @@ public:
       if (const auto geometry = kind.fit(found_[n], parameters)) {
         correspondence.factor = makeFactor(*geometry, correspondence.point);
         correspondence.weight = kind.weights[feature_[n]];
+        correspondence.variance = varianceOf(*geometry);
       }
     }
   }
@@ -120,6 +132,7 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                                             parameters.plane_neighbors, fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
+  weighByScatter(plane_weights, parameters.plane_scatter, correspondences.planes);
 }
 
 }  // namespace pcl_floam

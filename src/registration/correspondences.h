@@ -24,6 +24,7 @@ struct Correspondence {
   Eigen::Vector3d point;         ///< now, in the target's axes, relative to the local origin
   Factor factor;                 ///< in the same frame
   double weight = 0.0;           ///< W of Eq. 9; 0 where no line or plane was found
+  double variance = 0.0;         ///< of the plane at the point, m^2; 0 for lines
   double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
   /// Where the neighbours were searched, in the same frame.
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

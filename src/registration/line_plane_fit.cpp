@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+
 namespace pcl_floam {
 
 namespace {
@@ -27,6 +29,17 @@ struct Distribution {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
 };
 
+/// By what the plane's variance is larger at the query, the origin, than at the neighbours' centre.
+double extrapolation(const Distribution& points)
+{
+  double factor = 1.0;
+  for (int axis = 1; axis < 3; ++axis) {
+    const double beside = points.solver.eigenvectors().col(axis).dot(points.center);
+    factor += beside * beside / points.solver.eigenvalues()[axis];
+  }
+  return factor;
+}
+
 }  // namespace
 
 std::optional<LineFit> fitLine(const Neighbors& neighbors, const RegistrationParameters& parameters)
@@ -47,7 +60,8 @@ std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationP
       !(eigenvalues[1] > parameters.plane_spread * eigenvalues[2])) {
     return std::nullopt;
   }
-  return PlaneFit{points.center, points.solver.eigenvectors().col(0)};
+  return PlaneFit{points.center, points.solver.eigenvectors().col(0),
+                  std::max(0.0, eigenvalues[0]) * extrapolation(points)};
 }
 
 }  // namespace pcl_floam

@@ -21,6 +21,9 @@ struct LineFit {
 struct PlaneFit {
   Eigen::Vector3d center;
   Eigen::Vector3d normal;
+  /// Variance of the neighbours across the plane, m^2. Beside the neighbours' centre it grows, as that of any line or
+  /// plane fitted to scattered points does where it is prolonged.
+  double variance;
 };
 
 /// The line through the neighbours' centre along the eigenvector of the largest eigenvalue of their covariance;

@@ -66,6 +66,7 @@ void validate(const RegistrationParameters& p)
   check.above("plane_ratio", p.plane_ratio, 1.0);
   check.range("plane_spread", p.plane_spread, 0.0, 0.999);
   check.above("edge_weight", p.edge_weight, 0.0);
+  check.atLeast("plane_scatter", p.plane_scatter, 0.0);
   check.above("kernel_scale", p.kernel_scale, 0.0);
   check.range("max_features", p.max_features, 100, 1000000);
   check.range("min_correspondences", p.min_correspondences, 6, 1000000);

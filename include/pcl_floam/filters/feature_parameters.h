@@ -25,6 +25,9 @@ struct FeatureParameters {
   float max_range = 120.0F;     ///< m; > min_range
   /// m; an edge needs a smoothness of more than this, above the range noise. Reasonable: 0.02 to 0.1
   float edge_threshold = 0.1F;
+  /// And of more than this times the median smoothness of its scan line, which is two thirds of the range noise on
+  /// smooth surfaces: noise of 5 cm would make edges everywhere. For the vector sum; >= 0. Reasonable: 3 to 8
+  float edge_noise_ratio = 5.0F;
   /// An edge needs a smoothness of more than this times the mean distance to its neighbours: 0 on a line,
   /// 0.7 at a right-angled corner, 1 at the end of a surface.
   float edge_bend = 0.35F;

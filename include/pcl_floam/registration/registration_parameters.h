@@ -46,25 +46,27 @@ struct RegistrationParameters {
   int plane_neighbors = 5;             ///< map points a plane is fitted to; 4 to 20
   double max_neighbor_distance = 1.0;  ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
   double line_ratio = 8.0;             ///< a line's largest eigenvalue must exceed this times the second; > 1
-  double plane_ratio = 3.0;            ///< a plane's second eigenvalue must exceed this times the smallest; > 1
+  double plane_ratio = 10.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
   double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
-  /// What an edge counts beside a plane; > 0. Reasonable: 0.25 to 1. An edge's residual has two components, a plane's
-  /// has one: a half balances them. The paper counts each as 1 (Eq. 10). Measured by 04_choices.sh, 1 against 0.5:
-  /// KITTI raw 0001 3.3 against 2.8 cm, warehouse 1.2 against 1.0, handheld 0.67 against 0.70, urban 1.6 against 1.0,
-  /// corridor 5.5 against 2.7; but a highway of 1107 m 0.146 against 0.164 %.
-  double edge_weight = 0.5;
+  /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. An edge of the map lies where a scan happened to
+  /// hit a corner, or on the near side of a pole: centimetres off, and always behind, where planes are good to
+  /// millimetres. The paper counts each as 1 (Eq. 10). TABLE
+  double edge_weight = 0.06;
+  /// A plane whose map points scatter so many times more than is usual in the scan counts half, one with more scatter
+  /// less; >= 0, 0: all count alike. Reasonable: 2 to 8.
+  double plane_scatter = 4.0;
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
-  double kernel_scale = 0.1;
+  double kernel_scale = 0.05;
   /// Most features of each kind that are registered, evenly taken from those of the scan; >= 100. With 2500 of the
   /// 7000 planes of an HDL-64 scan the pose is as accurate as with all, with 1000 a fifth less so.
   int max_features = 2500;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
   /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.
-  double weak_threshold = 1e-4;
+  double weak_threshold = 1e-5;
   /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero. For features against a
   /// map: the odometry, localisation, `setInputTargetMap`; clouds are registered in all of them. Exact for
   /// \ref kPlanarMotion, for all translations and for all rotations; else to second order of the correction.

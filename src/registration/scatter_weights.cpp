@@ -1,0 +1,43 @@
+#include "registration/scatter_weights.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace pcl_floam {
+
+namespace {
+
+double medianVariance(const std::vector<Correspondence<PlaneFactor>>& planes)
+{
+  std::vector<double> variances;
+  variances.reserve(planes.size());
+  for (const auto& plane : planes) {
+    if (plane.weight > 0.0) {
+      variances.push_back(plane.variance);
+    }
+  }
+  if (variances.empty()) {
+    return 0.0;
+  }
+  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+  std::nth_element(variances.begin(), middle, variances.end());
+  return *middle;
+}
+
+}  // namespace
+
+void weighByScatter(const std::vector<double>& weights, double scatter,
+                    std::vector<Correspondence<PlaneFactor>>& planes)
+{
+  const double half = scatter * scatter * medianVariance(planes);
+  if (!(half > 0.0)) {
+    return;  // not asked for, or a map without noise
+  }
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].weight > 0.0) {
+      planes[i].weight = weights[i] * half / (half + planes[i].variance);
+    }
+  }
+}
+
+}  // namespace pcl_floam

