@@ -21,6 +21,9 @@ constexpr std::size_t kMaxStride = 4;
 /// Steps of less than so many times the thresholds of convergence are near.
 constexpr double kNear = 10.0;
 
+/// An edge costs what a plane does, and says less.
+constexpr std::size_t kPlanesPerEdge = 2;
+
 /// At most so many of the features, evenly taken.
 std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
 {
@@ -251,7 +254,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     return report;
   }
   const auto most = static_cast<std::size_t>(parameters.max_features);
-  const FeatureSet thinned{evenly(source.edges, most), evenly(source.planes, most)};
+  const FeatureSet thinned{evenly(source.edges, most / kPlanesPerEdge), evenly(source.planes, most)};
   return PoseEstimation(thinned, target, run, parameters).run();
 }
 

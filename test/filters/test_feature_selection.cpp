@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 
 namespace pcl_floam::test {
 namespace {
@@ -62,6 +63,23 @@ TEST(FeatureSelection, APlaneIsTheSmoothestOfItsCell)
     ASSERT_EQ(choice.one.at(line).size(), 1U);
     EXPECT_EQ(choice.one.at(line).front(), *std::min_element(all.begin(), all.end())) << "line " << line;
   }
+}
+
+TEST(FeatureSelection, NoiseMakesNoEdges)
+{
+  Room empty;
+  empty.furniture.clear();
+  Cloud cloud = toCloud(sweepRoom(empty, Lidar()));
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0.0F, 0.05F);  // m
+  for (auto& point : cloud) {
+    point.getVector3fMap() *= 1.0F + noise(random) / point.getVector3fMap().norm();
+  }
+  FeatureParameters parameters;
+  const std::size_t edges = featuresOf(cloud, parameters).edges.size();
+  parameters.edge_noise_ratio = 0.0F;
+  const std::size_t with_noise = featuresOf(cloud, parameters).edges.size();
+  EXPECT_GT(with_noise, 4 * edges) << edges << " edges";
 }
 
 TEST(FeatureSelection, NothingSeenAtGrazingIncidenceIsAFeature)

@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
+#include <utility>
 
 namespace pcl_floam::test {
 namespace {
@@ -69,14 +71,16 @@ TEST(Odometry, RecoversASteadyMotionFromItsFirstScan)
 
 TEST(Odometry, RecoversAnAcceleratedMotion)
 {
-  for (const CompensationMode mode :
-       {CompensationMode::two_stage, CompensationMode::iterative, CompensationMode::continuous}) {
+  // The paper's two stages undistort a sweep with the velocity of the last one, and lag behind an acceleration.
+  const std::array<std::pair<CompensationMode, double>, 3> limits = {
+      {{CompensationMode::two_stage, 0.07}, {CompensationMode::iterative, 0.03}, {CompensationMode::continuous, 0.03}}};
+  for (const auto& [mode, limit] : limits) {
     OdometryParameters parameters;
     parameters.compensation = mode;
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
       odometry.track(sweep(acceleratedPath, k));
-      EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << toString(mode) << ", scan " << k;
+      EXPECT_LT(error(odometry.pose(), acceleratedPath, k), limit) << toString(mode) << ", scan " << k;
       EXPECT_LT(angleError(odometry.pose(), acceleratedPath, k), 0.006) << toString(mode) << ", scan " << k;
     }
   }

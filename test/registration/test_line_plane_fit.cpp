@@ -51,6 +51,24 @@ TEST(PlaneFit, FindsAPlane)
   EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
 }
 
+TEST(PlaneFit, ItsVarianceIsTheScatterAcrossAndGrowsBeside)
+{
+  // Five points of a square with 1 m sides and its centre, two corners 3 cm above the others' plane.
+  const auto varianceAt = [](double aside) {
+    std::vector<Eigen::Vector3d> points = {
+        {0.5, 0.5, 0.03}, {-0.5, -0.5, 0.03}, {0.5, -0.5, -0.03}, {-0.5, 0.5, -0.03}, {0.0, 0.0, 0.0}};
+    for (Eigen::Vector3d& point : points) {
+      point.x() -= aside;
+    }
+    const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+    return plane ? plane->variance : -1.0;
+  };
+  const double across = 4.0 * 0.03 * 0.03 / 5.0;
+  const double along = 4.0 * 0.25 / 5.0;
+  EXPECT_NEAR(varianceAt(0.0), across, 1e-6);
+  EXPECT_NEAR(varianceAt(1.0), across * (1.0 + 1.0 / along), 1e-5);
+}
+
 TEST(LineFit, RefusesAPlane)
 {
   EXPECT_FALSE(

@@ -40,13 +40,13 @@ inline constexpr DegreesOfFreedom kPlanarMotion = {false, false, true, true, tru
 struct RegistrationParameters {
   SolverKind solver = SolverKind::gauss_newton;
   int max_iterations = 30;             ///< each with fresh correspondences; >= 1
-  double translation_epsilon = 1e-3;   ///< m; converged when a step is smaller than this ...
-  double rotation_epsilon = 2e-4;      ///< ... and smaller than this, in rad
+  double translation_epsilon = 2e-3;   ///< m; converged when a step is smaller than this ...
+  double rotation_epsilon = 4e-4;      ///< ... and smaller than this, in rad
   int edge_neighbors = 5;              ///< map points a line is fitted to; 3 to 20
   int plane_neighbors = 5;             ///< map points a plane is fitted to; 4 to 20
   double max_neighbor_distance = 1.0;  ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
   double line_ratio = 8.0;             ///< a line's largest eigenvalue must exceed this times the second; > 1
-  double plane_ratio = 10.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
+  double plane_ratio = 20.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
   double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
@@ -62,7 +62,7 @@ struct RegistrationParameters {
   double kernel_scale = 0.05;
   /// Most features of each kind that are registered, evenly taken from those of the scan; >= 100. With 2500 of the
   /// 7000 planes of an HDL-64 scan the pose is as accurate as with all, with 1000 a fifth less so.
-  int max_features = 2500;
+  int max_features = 1500;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
   /// weak: the guess is kept along them. Well constrained ones have 0.1 to 1. [0, 0.1]; 0 follows every direction.

@@ -1,0 +1,76 @@
+// Planes weighed by how well the map's points lie on them.
+#include "registration/scatter_weights.h"
+
+#include <gtest/gtest.h>
+
+namespace pcl_floam::test {
+namespace {
+
+/// Planes of given variances, all linked, with weight 2.
+std::vector<Correspondence<PlaneFactor>> planesOf(const std::vector<double>& variances)
+{
+  std::vector<Correspondence<PlaneFactor>> planes(variances.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    planes[i].variance = variances[i];
+    planes[i].weight = 2.0;
+  }
+  return planes;
+}
+
+const std::vector<double> kTwos(5, 2.0);
+
+TEST(ScatterWeights, SoManyTimesTheUsualScatterCountsHalf)
+{
+  auto planes = planesOf({1e-4, 1e-4, 0.0, 9e-4, 1.0});  // their median is (1 cm)^2; the fourth has three times 1 cm
+  weighByScatter(kTwos, 3.0, planes);
+  EXPECT_DOUBLE_EQ(planes[2].weight, 2.0);
+  EXPECT_DOUBLE_EQ(planes[3].weight, 1.0);
+  EXPECT_NEAR(planes[4].weight, 2.0 * 9e-4, 1e-5);
+  EXPECT_DOUBLE_EQ(planes[0].weight, 2.0 * 9.0 / 10.0);
+}
+
+TEST(ScatterWeights, DependOnProportionsOnly)
+{
+  auto planes = planesOf({1e-4, 2e-4, 3e-4, 4e-4, 5e-4});
+  auto larger = planesOf({1e-2, 2e-2, 3e-2, 4e-2, 5e-2});
+  weighByScatter(kTwos, 4.0, planes);
+  weighByScatter(kTwos, 4.0, larger);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_NEAR(planes[i].weight, larger[i].weight, 1e-12);
+  }
+}
+
+TEST(ScatterWeights, AreTheSameWhenTakenTwice)
+{
+  auto planes = planesOf({1e-4, 2e-4, 3e-4, 4e-4, 5e-4});
+  weighByScatter(kTwos, 4.0, planes);
+  auto again = planes;
+  weighByScatter(kTwos, 4.0, again);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_DOUBLE_EQ(planes[i].weight, again[i].weight);
+  }
+}
+
+TEST(ScatterWeights, WithoutScatterOrWithoutNoiseNothingChanges)
+{
+  for (const auto& [scatter, variances] :
+       {std::pair(0.0, std::vector<double>{1e-4, 2e-4, 1.0}), std::pair(4.0, std::vector<double>{0.0, 0.0, 1.0})}) {
+    auto planes = planesOf(variances);
+    weighByScatter(kTwos, scatter, planes);
+    for (const auto& plane : planes) {
+      EXPECT_DOUBLE_EQ(plane.weight, 2.0);
+    }
+  }
+}
+
+TEST(ScatterWeights, WhatIsNotLinkedStaysOutAndHasNoSay)
+{
+  auto planes = planesOf({1e-4, 1e-4, 1e-4, 1.0, 1.0});
+  planes[3].weight = planes[4].weight = 0.0;
+  weighByScatter(kTwos, 1.0, planes);
+  EXPECT_DOUBLE_EQ(planes[0].weight, 1.0);
+  EXPECT_DOUBLE_EQ(planes[3].weight, 0.0);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
