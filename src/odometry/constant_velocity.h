@@ -73,7 +73,8 @@ public:
   ///
   /// It says little of the pose, and of the twist mainly that it goes with the pose: a stiff prior of the pose (white
   /// noise of acceleration, as seen) lags behind every acceleration, the map takes that in, and the drift of the real
-  /// drive of the tests went from 0.03 to 0.12 m. Where the scan leaves a direction open even a weak one decides.
+  /// drive of the tests went from 0.03 to 0.12 m. Where the scan says little of a direction even a weak one helps: with
+  /// a spread of 0.3 m instead of 0.07 an HDL-32 that misses 30 % of its returns lost its way in corridors.
   /// \param periods        since the last scan, > 0
   /// \param sweep_fraction duration of the sweep in periods
   [[nodiscard]] MotionPrior prior(const SE3& predicted, const Vector6& sweep_twist, double periods,

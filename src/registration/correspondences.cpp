@@ -22,14 +22,12 @@ PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
   return {query + plane.center, plane.normal};
 }
 
-double varianceOf(const LineFit& /*line*/)
-{
-  return 0.0;
-}
+void noteNoise(const LineFit& /*line*/, Correspondence<EdgeFactor>& /*correspondence*/) {}
 
-double varianceOf(const PlaneFit& plane)
+void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondence)
 {
-  return plane.variance;
+  correspondence.variance = plane.variance;
+  correspondence.tilt = plane.tilt;
 }
 
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
@@ -73,7 +71,7 @@ public:
       if (const auto geometry = kind.fit(found_[n], parameters)) {
         correspondence.factor = makeFactor(*geometry, correspondence.point);
         correspondence.weight = kind.weights[feature_[n]];
-        correspondence.variance = varianceOf(*geometry);
+        noteNoise(*geometry, correspondence);
       }
     }
   }

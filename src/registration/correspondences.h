@@ -9,6 +9,7 @@
 #include <pcl_floam/registration/feature_registration.h>
 #include <pcl_floam/registration/registration_parameters.h>
 
+#include <array>
 #include <limits>
 #include <vector>
 
@@ -21,10 +22,12 @@ namespace pcl_floam {
 /// trajectory.
 template <typename Factor>
 struct Correspondence {
-  Eigen::Vector3d point;         ///< now, in the target's axes, relative to the local origin
-  Factor factor;                 ///< in the same frame
-  double weight = 0.0;           ///< W of Eq. 9; 0 where no line or plane was found
-  double variance = 0.0;         ///< of the plane at the point, m^2; 0 for lines
+  Eigen::Vector3d point;  ///< now, in the target's axes, relative to the local origin
+  Factor factor;          ///< in the same frame
+  double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
+  double variance = 0.0;  ///< of the plane at the point, m^2; 0 for lines
+  /// What the plane's normal may be off, one standard deviation along each axis; zero for lines.
+  std::array<Eigen::Vector3d, 2> tilt = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
   /// Where the neighbours were searched, in the same frame.
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

@@ -1,8 +1,8 @@
 #include "registration/information_analysis.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
@@ -12,6 +12,8 @@ namespace {
 /// An unconstrained direction's eigenvalue in the covariance: large variance, still finite.
 constexpr double kNoInformation = 1e-9;
 
+using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solvers do not take unaligned types
+
 }  // namespace
 
 InformationAnalysis::InformationAnalysis(const NormalEquations& equations, double weak_threshold)
@@ -20,30 +22,52 @@ InformationAnalysis::InformationAnalysis(const NormalEquations& equations, doubl
   const double extent = std::sqrt(equations.squared_extent / equations.weight);
   const double per_metre = extent > 0.0 ? 1.0 / extent : 1.0;
   scale_ << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
-  using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solver does not take unaligned types
-  const Matrix6d scaled = scale_.asDiagonal() * equations.information * scale_.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scaled / equations.weight);
+  const auto scaled = [&](const Matrix6& m) {
+    return Matrix6d(scale_.asDiagonal() * m * scale_.asDiagonal() / equations.weight);
+  };
+  scaled_ = scaled(equations.information);
+  const Matrix6d known =
+      weak_threshold > 0.0 ? Matrix6d(scaled_ - scaled(equations.noise_information)) : Matrix6d(scaled_);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(known);
   eigenvalues_ = solver.eigenvalues();
   eigenvectors_ = solver.eigenvectors();
 }
 
-Vector6 InformationAnalysis::step() const
+Matrix6 InformationAnalysis::strongInverse() const
 {
-  const Vector6 projected = eigenvectors_.transpose() * scale_.asDiagonal() * equations_.gradient;
-  Vector6 solution = Vector6::Zero();
+  // In the eigenvectors' axes. H may say a little of weak directions, too: its parts that lead there are cut off.
+  Matrix6d turned = eigenvectors_.transpose() * scaled_ * eigenvectors_;
   for (int i = 0; i < 6; ++i) {
-    if (!isWeak(i)) {
-      solution -= projected[i] / (eigenvalues_[i] * equations_.weight) * eigenvectors_.col(i);
+    if (isWeak(i)) {
+      turned.row(i).setZero();
+      turned.col(i).setZero();
+      turned(i, i) = 1.0;
     }
   }
-  return scale_.asDiagonal() * solution;
+  Matrix6d inverse = turned.ldlt().solve(Matrix6d::Identity());
+  for (int i = 0; i < 6; ++i) {
+    if (isWeak(i)) {
+      inverse(i, i) = 0.0;
+    }
+  }
+  return eigenvectors_ * inverse * eigenvectors_.transpose();
+}
+
+Vector6 InformationAnalysis::step() const
+{
+  const Vector6 gradient = scale_.asDiagonal() * equations_.gradient / equations_.weight;
+  return -(scale_.asDiagonal() * (strongInverse() * gradient));
 }
 
 Matrix6 InformationAnalysis::covariance() const
 {
-  const Vector6 inverse = (eigenvalues_.array().max(kNoInformation) * equations_.weight).inverse().matrix();
-  const Matrix6 vectors = scale_.asDiagonal() * eigenvectors_;
-  return residualVariance() * (vectors * inverse.asDiagonal() * vectors.transpose());
+  Matrix6 inverse = strongInverse();
+  for (int i = 0; i < 6; ++i) {
+    if (isWeak(i)) {
+      inverse += eigenvectors_.col(i) * eigenvectors_.col(i).transpose() / kNoInformation;
+    }
+  }
+  return residualVariance() / equations_.weight * (scale_.asDiagonal() * inverse * scale_.asDiagonal());
 }
 
 Matrix6 InformationAnalysis::strongProjection() const

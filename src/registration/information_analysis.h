@@ -12,9 +12,12 @@ namespace pcl_floam {
 
 /// Eigen-analysis of H in metres: rotations are scaled by the root mean square distance of the points, so that an
 /// eigenvalue tells how well a displacement of the typical point is seen, whatever its direction.
+///
+/// What the noise of the normals makes is taken out before a direction is called weak or strong: in a smooth corridor
+/// of 2 cm noise it is 0.0003 of the weights, in one with doors and 5 cm noise all of H along it is hardly more.
 class InformationAnalysis {
 public:
-  /// \param weak_threshold eigenvalues per correspondence below this are weak
+  /// \param weak_threshold eigenvalues per correspondence below this are weak; 0: none is, and noise is not looked for
   InformationAnalysis(const NormalEquations& equations, double weak_threshold);
 
   /// The Gauss-Newton step -H^-1 b; zero along weak directions, where following the noise would only do harm
@@ -38,11 +41,15 @@ public:
 private:
   [[nodiscard]] bool isWeak(int i) const { return eigenvalues_[i] < weak_threshold_ || !(eigenvalues_[i] > 0.0); }
 
+  /// Inverse of the scaled H within the strong directions, zero along weak ones.
+  [[nodiscard]] Matrix6 strongInverse() const;
+
   const NormalEquations& equations_;
   double weak_threshold_;
   Vector6 scale_;         ///< from scaled unknowns (all in m) to (m, rad)
-  Vector6 eigenvalues_;   ///< of the scaled H over the sum of the weights
-  Matrix6 eigenvectors_;  ///< columns, of the scaled H
+  Vector6 eigenvalues_;   ///< of the scaled H without noise over the sum of the weights
+  Matrix6 eigenvectors_;  ///< columns, of the same
+  Matrix6 scaled_;        ///< the scaled H over the sum of the weights
 };
 
 }  // namespace pcl_floam

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <optional>
 
 namespace pcl_floam {
@@ -24,6 +25,8 @@ struct PlaneFit {
   /// Variance of the neighbours across the plane, m^2. Beside the neighbours' centre it grows, as that of any line or
   /// plane fitted to scattered points does where it is prolonged.
   double variance;
+  /// By what the normal may be off along the plane's two axes, as vectors of one standard deviation each.
+  std::array<Eigen::Vector3d, 2> tilt;
 };
 
 /// The line through the neighbours' centre along the eigenvector of the largest eigenvalue of their covariance;

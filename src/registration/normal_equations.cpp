@@ -13,6 +13,9 @@ namespace {
 
 constexpr std::size_t kChunk = 256;
 
+/// Every so many-th plane tells of the noise for all: it is a mean over hundreds that is wanted.
+constexpr std::size_t kNoiseStride = 4;
+
 /// For normally distributed residuals, 1.4826 medians of the absolute value are one standard deviation; three of
 /// those are left almost untouched by the kernel.
 constexpr double kScalePerMedian = 3.0 * 1.4826;
@@ -41,12 +44,7 @@ public:
   /// One scalar residual r = n^T (q - c), whose derivative by the perturbation is J = n^T [I, -[q]x] (Eq. 11, 13, 14).
   void add(const Eigen::Vector3d& q, const Eigen::Vector3d& n, double residual, double weight, double since_reference)
   {
-    const std::array<double, 6> j = {n.x(),
-                                     n.y(),
-                                     n.z(),
-                                     q.y() * n.z() - q.z() * n.y(),
-                                     q.z() * n.x() - q.x() * n.z(),
-                                     q.x() * n.y() - q.y() * n.x()};
+    const std::array<double, 6> j = derivative(q, n);
     std::size_t k = 0;
     for (std::size_t row = 0; row < 6; ++row) {
       const double wj = weight * j[row];
@@ -62,12 +60,26 @@ public:
     }
   }
 
+  /// What a normal that is off by \p tilt adds to H.
+  void addNoise(const Eigen::Vector3d& q, const Eigen::Vector3d& tilt, double weight)
+  {
+    const std::array<double, 6> j = derivative(q, tilt);
+    std::size_t k = 0;
+    for (std::size_t row = 0; row < 6; ++row) {
+      const double wj = weight * j[row];
+      for (std::size_t column = row; column < 6; ++column, ++k) {
+        noise_information_[k] += wj * j[column];
+      }
+    }
+  }
+
   void addTo(NormalEquations& sums) const
   {
     std::size_t k = 0;
     for (int row = 0; row < 6; ++row) {
       for (int column = row; column < 6; ++column, ++k) {
         addSymmetric(information_[k], row, column, sums.information);
+        addSymmetric(noise_information_[k], row, column, sums.noise_information);
         addSymmetric(coupling_[k], row, column, sums.coupling);
         addSymmetric(twist_information_[k], row, column, sums.twist_information);
       }
@@ -99,6 +111,17 @@ public:
   } scalars;
 
 private:
+  /// n^T [I, -[q]x]
+  static std::array<double, 6> derivative(const Eigen::Vector3d& q, const Eigen::Vector3d& n)
+  {
+    return {n.x(),
+            n.y(),
+            n.z(),
+            q.y() * n.z() - q.z() * n.y(),
+            q.z() * n.x() - q.x() * n.z(),
+            q.x() * n.y() - q.y() * n.x()};
+  }
+
   static void addSymmetric(double value, int row, int column, Matrix6& matrix)
   {
     matrix(row, column) += value;
@@ -108,6 +131,7 @@ private:
   }
 
   std::array<double, 21> information_{};
+  std::array<double, 21> noise_information_{};
   std::array<double, 21> coupling_{};
   std::array<double, 21> twist_information_{};
   std::array<double, 6> gradient_{};
@@ -118,6 +142,17 @@ void addRows(const Correspondence<PlaneFactor>& c, double weight, ChunkSums& sum
 {
   sums.add(c.point, c.factor.normal, c.factor.residual(c.point)[0], weight, c.since_reference);
 }
+
+/// The noise in the rows of a plane.
+void addNoise(const Correspondence<PlaneFactor>& c, double weight, ChunkSums& sums)
+{
+  for (const Eigen::Vector3d& tilt : c.tilt) {
+    sums.addNoise(c.point, tilt, weight);
+  }
+}
+
+/// Edges are few and face all ways: theirs is left out.
+void addNoise(const Correspondence<EdgeFactor>& /*c*/, double /*weight*/, ChunkSums& /*sums*/) {}
 
 /// The residual vector across the line as its two components: the third is zero.
 void addRows(const Correspondence<EdgeFactor>& c, double weight, ChunkSums& sums)
@@ -130,8 +165,8 @@ void addRows(const Correspondence<EdgeFactor>& c, double weight, ChunkSums& sums
 }
 
 template <typename Factor>
-void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double scale, ChunkSums& sums, int& count,
-                int& inliers)
+void accumulate(const Correspondence<Factor>& c, std::size_t place, RobustKernel kernel, double scale, ChunkSums& sums,
+                int& count, int& inliers)
 {
   if (c.weight <= 0.0) {
     return;
@@ -140,6 +175,9 @@ void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double sca
   const double robust = robustWeight(kernel, squared, scale);
   const double weight = c.weight * robust;
   addRows(c, weight, sums);
+  if (place % kNoiseStride == 0) {
+    addNoise(c, static_cast<double>(kNoiseStride) * weight, sums);
+  }
   sums.scalars.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);
   sums.scalars.weighted_squares += weight * squared;
   sums.scalars.weight += weight;
@@ -172,9 +210,10 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
     const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
     for (std::size_t i = first; i < std::min(first + kChunk, total); ++i) {
       if (i < edges) {
-        accumulate(correspondences.edges[i], kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
+        accumulate(correspondences.edges[i], i, kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
       } else {
-        accumulate(correspondences.planes[i - edges], kernel, scales.plane, sums, counts.planes, counts.plane_inliers);
+        accumulate(correspondences.planes[i - edges], i - edges, kernel, scales.plane, sums, counts.planes,
+                   counts.plane_inliers);
       }
     }
   }
@@ -189,7 +228,8 @@ void lock(const DegreesOfFreedom& locked, NormalEquations& equations)
 {
   for (int i = 0; i < 6; ++i) {
     if (locked[static_cast<std::size_t>(i)]) {
-      for (Matrix6* matrix : {&equations.information, &equations.coupling, &equations.twist_information}) {
+      for (Matrix6* matrix :
+           {&equations.information, &equations.noise_information, &equations.coupling, &equations.twist_information}) {
         matrix->row(i).setZero();
         matrix->col(i).setZero();
       }

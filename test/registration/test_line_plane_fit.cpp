@@ -69,6 +69,31 @@ TEST(PlaneFit, ItsVarianceIsTheScatterAcrossAndGrowsBeside)
   EXPECT_NEAR(varianceAt(1.0), across * (1.0 + 1.0 / along), 1e-5);
 }
 
+TEST(PlaneFit, ItsTiltIsThatOfNormalsFittedToNoise)
+{
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.0, 0.01);
+  Eigen::Vector2d seen = Eigen::Vector2d::Zero();
+  Eigen::Vector2d told = Eigen::Vector2d::Zero();
+  for (int i = 0; i < 2000; ++i) {
+    std::vector<Eigen::Vector3d> points;  // twice as long as wide
+    for (const auto& [x, y] : {std::pair(0.2, 0.1), {0.2, -0.1}, {-0.2, 0.1}, {-0.2, -0.1}, {0.0, 0.0}}) {
+      points.emplace_back(x, y, noise(random));
+    }
+    const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+    if (plane) {
+      const Eigen::Vector3d normal = plane->normal / plane->normal.z();
+      seen += normal.head<2>().cwiseAbs2();
+      told += plane->tilt[0].head<2>().cwiseAbs2() + plane->tilt[1].head<2>().cwiseAbs2();
+    }
+  }
+  for (int axis = 0; axis < 2;
+       ++axis) {  // two of five points' degrees of freedom are left, of which 1.5 make up for half
+    EXPECT_GT(told[axis], 0.4 * seen[axis]) << axis;
+    EXPECT_LT(told[axis], 1.2 * seen[axis]) << axis;
+  }
+}
+
 TEST(LineFit, RefusesAPlane)
 {
   EXPECT_FALSE(

@@ -352,6 +352,51 @@ TEST_F(NormalEquationsTest, AWallLeavesThreeDirectionsWeak)
   EXPECT_GT(analysis.covariance()(0, 0), 1e3 * analysis.covariance()(2, 2));
 }
 
+/// The walls, floor and ceiling of a corridor along x whose fitted normals are off by some standard deviation, and the
+/// door frames across it.
+Correspondences corridorOf(double tilt, std::size_t frames)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> off(0.0, tilt);
+  Correspondences correspondences;
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const bool on_frame = i < frames;
+    const Eigen::Vector3d side = i % 2 == 0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d other = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+    Correspondence<PlaneFactor> c;
+    c.point = uniform(random, 15.0) * Eigen::Vector3d::UnitX() + (i % 4 < 2 ? 1.5 : -1.5) * side +
+              uniform(random, 1.5) * other;
+    c.weight = 1.0;
+    c.tilt = {tilt * Eigen::Vector3d::UnitX(), tilt * other};
+    const Eigen::Vector3d normal = side + off(random) * Eigen::Vector3d::UnitX() + off(random) * other;
+    c.factor = {c.point + randomVector(random, 0.01), on_frame ? Eigen::Vector3d(Eigen::Vector3d::UnitX()) : normal};
+    correspondences.planes.push_back(c);
+  }
+  return correspondences;
+}
+
+TEST_F(NormalEquationsTest, WhatTheNormalsNoiseFeignsIsKnown)
+{
+  const NormalEquations equations = equationsOf(corridorOf(0.03, 0));
+  EXPECT_GT(equations.information(0, 0), 0.0);
+  EXPECT_NEAR(equations.noise_information(0, 0) / equations.information(0, 0), 1.0, 0.1);
+  EXPECT_LT(equations.noise_information(1, 1), 0.01 * equations.information(1, 1));
+}
+
+TEST_F(NormalEquationsTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneWithDoorsIsNot)
+{
+  const NormalEquations smooth = equationsOf(corridorOf(0.03, 0));
+  const InformationAnalysis analysis(smooth, 2e-4);
+  const auto weak = analysis.weakDirections();
+  ASSERT_EQ(weak.size(), 1U);
+  EXPECT_GT(std::abs(weak.front().direction[0]), 0.99);
+  EXPECT_LT(std::abs(analysis.step()[0]), 1e-3);
+  EXPECT_GT(analysis.covariance()(0, 0), 100.0 * analysis.covariance()(1, 1));
+  EXPECT_TRUE(InformationAnalysis(smooth, 0.0).weakDirections().empty());
+
+  EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections().empty());
+}
+
 TEST_F(NormalEquationsTest, NoiseAlongWeakDirectionsIsNotFollowed)
 {
   // Normals that are a little off seem to tell something of x and y, and noise in the distances turns it into metres.
