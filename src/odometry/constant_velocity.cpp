@@ -96,7 +96,8 @@ MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twis
   // The floors let a motion begin after a long rest.
   constexpr double kLeastChange = 0.01;  // m per period
   constexpr double kLeastTurn = 0.005;   // rad per period
-  constexpr double kPoseSpread = 0.07;   // m
+  constexpr double kLeastSpread = 0.07;  // m
+  constexpr double kMostSpread = 0.3;    // m
   constexpr double kPoseRotation = 0.1;  // rad
   const auto spread = [&](double pose, double noise) {
     MotionPrior::Spread result;
@@ -109,7 +110,9 @@ MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twis
   MotionPrior prior;
   prior.pose = predicted;
   prior.twist = sweep_twist;
-  prior.translation = spread(kPoseSpread, std::max(translation_, kLeastChange * kLeastChange));
+  // A velocity that has just changed, mostly along one direction, may be wrong by twice as much.
+  const double pose_spread = std::clamp(2.0 * std::sqrt(3.0 * translation_), kLeastSpread, kMostSpread);
+  prior.translation = spread(pose_spread, std::max(translation_, kLeastChange * kLeastChange));
   prior.rotation = spread(kPoseRotation, std::max(rotation_, kLeastTurn * kLeastTurn));
   return prior;
 }

@@ -88,6 +88,24 @@ TEST(ConstantVelocity, FollowsTheTwistForAsLongAsItIsWorthAnything)
   EXPECT_LT((log(velocity.motion(50.0)) - 10.0 * twist).norm(), 1e-12);
 }
 
+TEST(VelocityNoise, HoldsThePoseLessAfterAChangeOfVelocity)
+{
+  const auto spreadOf = [](const VelocityNoise& noise) {
+    return noise.prior(SE3(), Vector6::Zero(), 1.0, 1.0).translation.pose;
+  };
+  VelocityNoise noise;
+  const double at_first = spreadOf(noise);
+  for (int i = 0; i < 30; ++i) {
+    noise.observe(Vector6::Zero(), 1.0);
+  }
+  const double steady = spreadOf(noise);
+  noise.observe(0.3 * Vector6::UnitX(), 1.0);
+  const double changed = spreadOf(noise);
+  EXPECT_LT(steady, 0.1 * at_first);
+  EXPECT_GT(changed, 4.0 * steady);
+  EXPECT_LE(changed, at_first);
+}
+
 TEST(PredictionError, BoundsTheNextOneAndFades)
 {
   PredictionError error;

@@ -83,6 +83,19 @@ TEST(KittiRaw0001, CompensationPays)
   EXPECT_LT(errorWith(CompensationMode::iterative), without);
 }
 
+TEST(KittiRaw0001, TheDriveIsFoundToStartInMotionWithoutEdges)
+{
+  const std::filesystem::path folder = dataFolder("kitti_raw_0001");
+  SKIP_WITHOUT(folder);
+  OdometryParameters parameters;
+  parameters.vertical_correction = 0.205;
+  parameters.pose_instant = PoseInstant::middle;
+  parameters.features.edges_per_sector = 0;
+  OdometryPipeline odometry(parameters);
+  const std::vector<SE3> poses = trackAll(ScanSource(folder / "velodyne"), odometry);
+  EXPECT_LT(absoluteTrajectoryError(poses, truePoses(folder / "poses.txt")).rms, 0.15);
+}
+
 TEST(KittiRaw0048, PcdSequenceIsTrackedSmoothly)
 {
   const std::filesystem::path folder = dataFolder("kitti_raw_0048_pcd");
