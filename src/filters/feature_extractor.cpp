@@ -15,6 +15,9 @@ namespace pcl_floam {
 
 namespace {
 
+/// So much of what makes an edge must lie across the line: a recess of a hand's breadth has about a third.
+constexpr float kAcross = 0.3F;
+
 constexpr float kNeverFlat = std::numeric_limits<float>::max();
 
 /// Scratch memory for one scan line after another.
@@ -81,7 +84,8 @@ public:
     markNotAsked();
     line_.sharpness.resize(line_.sigma.size());
     line_.flatness.resize(line_.sigma.size());
-    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), edgeThreshold(), parameters_.plane_threshold,
+    threshold_ = edgeThreshold();
+    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), threshold_, parameters_.plane_threshold,
          line_.sharpness.data(), line_.flatness.data());
 
     const int begin = parameters_.neighbors_each_side;
@@ -166,9 +170,20 @@ private:
 
   [[nodiscard]] bool isEdge(int n) const
   {
-    return sharpness(n) > 0.0F &&
-           sharpness(n) >
-               parameters_.edge_bend * meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+    if (!(sharpness(n) > 0.0F)) {
+      return false;
+    }
+    const float distance = meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+    if (!(sharpness(n) > parameters_.edge_bend * distance)) {
+      return false;
+    }
+    if (parameters_.smoothness != SmoothnessKind::vector_sum) {
+      return true;
+    }
+    // Where returns are missing, a straight line's neighbours are nearer on one side: its sum is long, but along it.
+    const float across = meanDifferenceAcross(line_.points, n, parameters_.neighbors_each_side);
+    return isBesideDepthStep(line_.points, n) ||
+           across > kAcross * std::max(threshold_, parameters_.edge_bend * distance);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.
@@ -222,6 +237,7 @@ private:
   LineScratch& line_;
   FeatureSet& features_;
   std::size_t first_index_ = 0;
+  float threshold_ = 0.0F;  ///< of the edges' smoothness in this line
 };
 
 }  // namespace

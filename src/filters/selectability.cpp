@@ -79,6 +79,13 @@ void markOccluded(const LinePoints& line, std::size_t half_window, std::vector<s
 
 }  // namespace
 
+bool isBesideDepthStep(const LinePoints& line, int n)
+{
+  std::array<std::int32_t, 2> is_step{};
+  const auto before = static_cast<std::size_t>(n - 1);
+  return findDepthSteps(2, &line.range[before], &line.squared_step[before], is_step.data()) > 0;
+}
+
 void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::int32_t>& unfit)
 {
   unfit.resize(line.x.size());

@@ -15,4 +15,8 @@ namespace pcl_floam {
 /// with the viewpoint), or on a surface seen almost edge on. As wide as the coordinates, for the loops' sake.
 void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::int32_t>& unfit);
 
+/// Whether a surface ends at point \p n: the next point on one side lies on another, in front or behind.
+/// \pre 1 <= n < line.size() - 1
+[[nodiscard]] bool isBesideDepthStep(const LinePoints& line, int n);
+
 }  // namespace pcl_floam

@@ -18,4 +18,9 @@ void computeSmoothness(const LinePoints& line, int half_window, SmoothnessKind k
 /// \pre half_window <= n < line.size() - half_window
 [[nodiscard]] float meanNeighborDistance(const LinePoints& line, int n, int half_window);
 
+/// The part of the mean difference to the neighbours that lies across the line, in m: 0 on a straight line however its
+/// points are spaced, the whole of it at a corner.
+/// \pre half_window <= n < line.size() - half_window
+[[nodiscard]] float meanDifferenceAcross(const LinePoints& line, int n, int half_window);
+
 }  // namespace pcl_floam

@@ -82,6 +82,29 @@ TEST(FeatureSelection, NoiseMakesNoEdges)
   EXPECT_GT(with_noise, 4 * edges) << edges << " edges";
 }
 
+TEST(FeatureSelection, MissingReturnsMakeNoEdges)
+{
+  Room walls;
+  walls.walls = {{-30.0, -2.0, -100.0}, {30.0, 2.0, 100.0}};
+  walls.furniture.clear();
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0.0F, 0.02F);  // m
+  std::bernoulli_distribution lost(0.3);
+  const Cloud whole = toCloud(sweepRoom(walls, Lidar()));
+  Cloud rest;
+  for (auto point : whole) {
+    point.getVector3fMap() *= 1.0F + noise(random) / point.getVector3fMap().norm();
+    if (!lost(random)) {
+      rest.push_back(point);
+    }
+  }
+  std::size_t on_walls = 0;
+  for (const Feature& edge : featuresOf(rest).edges) {
+    on_walls += std::abs(edge.x) < 28.0F ? 1U : 0U;  // not in the corners
+  }
+  EXPECT_LE(on_walls, 40U);  // 99 if an edge may lie along its line
+}
+
 TEST(FeatureSelection, NothingSeenAtGrazingIncidenceIsAFeature)
 {
   Room corridor;
