@@ -22,7 +22,7 @@ constexpr std::size_t kMaxStride = 4;
 constexpr double kNear = 10.0;
 
 /// An edge costs what a plane does, and says less.
-constexpr std::size_t kPlanesPerEdge = 2;
+constexpr std::size_t kPlanesPerEdge = 4;
 
 /// At most so many of the features, evenly taken.
 std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
