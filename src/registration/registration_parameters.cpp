@@ -5,8 +5,6 @@
 #include <pcl_floam/map/neighbor_search.h>
 #include <pcl_floam/registration/registration_report.h>
 
-#include <algorithm>
-
 namespace pcl_floam {
 
 const char* toString(WeightScheme scheme)
@@ -53,15 +51,6 @@ const char* toString(Termination termination)
     case Termination::invalid_input: return "the guess is not finite";
   }
   return "unknown";
-}
-
-RegistrationParameters forSingleScans(RegistrationParameters parameters)
-{
-  parameters.edge_weight = std::max(0.5, parameters.edge_weight);
-  parameters.kernel_scale = std::max(0.1, parameters.kernel_scale);
-  parameters.plane_scatter = 0.0;
-  parameters.plane_ratio = std::min(3.0, parameters.plane_ratio);
-  return parameters;
 }
 
 void validate(const RegistrationParameters& p)

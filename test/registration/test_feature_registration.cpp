@@ -343,26 +343,5 @@ TEST_F(MovingSweepTest, FreeMotionFarFromTheOrigin)
   EXPECT_LT((near.sweep_twist - there.sweep_twist).norm(), 1e-3);
 }
 
-TEST(RegistrationParametersTest, SingleScansLoosenWhatAMapAllowsToBeStrict)
-{
-  RegistrationParameters own;
-  own.edge_weight = 0.8;
-  own.kernel_scale = 0.2;
-  own.plane_ratio = 2.0;
-  own.max_features = 700;
-  const RegistrationParameters kept = forSingleScans(own);
-  EXPECT_EQ(kept.edge_weight, 0.8);
-  EXPECT_EQ(kept.kernel_scale, 0.2);
-  EXPECT_EQ(kept.plane_ratio, 2.0);
-  EXPECT_EQ(kept.max_features, 700);
-  const RegistrationParameters usual;
-  const RegistrationParameters loosened = forSingleScans(usual);
-  EXPECT_GT(loosened.edge_weight, usual.edge_weight);
-  EXPECT_GT(loosened.kernel_scale, usual.kernel_scale);
-  EXPECT_LT(loosened.plane_ratio, usual.plane_ratio);
-  EXPECT_EQ(loosened.plane_scatter, 0.0);
-  EXPECT_NO_THROW(validate(loosened));
-}
-
 }  // namespace
 }  // namespace pcl_floam::test

@@ -82,7 +82,6 @@ public:
 
   EdgePlaneRegistration();
 
-  /// Unless they are set, those of \ref forSingleScans hold for a target that is a cloud.
   /// \throws std::invalid_argument if a parameter is out of its range.
   void setParameters(const RegistrationParameters& parameters);
   [[nodiscard]] const RegistrationParameters& getParameters() const { return parameters_; }
@@ -159,7 +158,6 @@ private:
   [[nodiscard]] PointCloudSource movedSource(const SE3& target_T_source);
 
   RegistrationParameters parameters_;
-  bool has_own_parameters_ = false;  ///< set by the user
   FeatureParameters feature_parameters_;
   SensorModel sensor_;
   std::optional<FeatureSet> source_features_;

@@ -76,13 +76,6 @@ struct RegistrationParameters {
   DegreesOfFreedom locked = {};
 };
 
-/// The same settings for a target that is a single scan and no map of many: every landmark is needed, and none is good
-/// to millimetres. Edges count at least a half of a plane, planes all alike, residuals of up to 10 cm are usual.
-///
-/// With the settings for a map, the real drive of the tests was thought to start at 2.8 m/s instead of 13 when its
-/// edges were left out, and sparse scans of it were registered with 10 cm of error instead of 2.
-[[nodiscard]] RegistrationParameters forSingleScans(RegistrationParameters parameters);
-
 /// \throws std::invalid_argument naming the first setting that is out of its range.
 void validate(const RegistrationParameters& parameters);
 

@@ -59,8 +59,7 @@ const PreparedCloud& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::ta
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featureRegistrationParameters() const
 {
-  const bool as_they_are = has_own_parameters_ || target_map_ != nullptr;
-  RegistrationParameters parameters = as_they_are ? parameters_ : forSingleScans(parameters_);
+  RegistrationParameters parameters = parameters_;
   parameters.max_iterations = iterationLimit();
   parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
   if (this->transformation_epsilon_ > 0.0) {

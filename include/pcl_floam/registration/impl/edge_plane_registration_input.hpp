@@ -23,7 +23,6 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setParameters(cons
 {
   validate(parameters);
   parameters_ = parameters;
-  has_own_parameters_ = true;
   this->max_iterations_ = parameters.max_iterations;
 }
 
