@@ -52,8 +52,9 @@ struct RegistrationParameters {
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. An edge of the map lies where a scan happened to
   /// hit a corner, or on the near side of a pole: centimetres off and always behind, where planes are good to
-  /// millimetres. The paper counts each as 1 (Eq. 10): three to four times the error on four of five data sets
-  /// (04_choices.sh).
+  /// millimetres. The paper counts each as 1 (Eq. 10); measured by 04_choices.sh, 1 against 0.06: KITTI raw 0001 3.2
+  /// against 4.2 cm, within its ground truth's noise; warehouse 1.6 against 1.0, handheld 0.6 against 0.5, urban 2.9
+  /// against 0.8, corridor 6.9 against 3.4.
   double edge_weight = 0.06;
   /// A plane whose map points scatter so many times more than is usual in the scan counts half, one with more scatter
   /// less; >= 0, 0: all count alike. Reasonable: 2 to 8.
