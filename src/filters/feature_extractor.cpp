@@ -15,7 +15,8 @@ namespace pcl_floam {
 
 namespace {
 
-/// So much of what makes an edge must lie across the line: a recess of a hand's breadth has about a third.
+/// Of the smoothness that makes an edge, so much must lie across the line. Where a surface steps back by a hand's
+/// breadth, as at a door, about a third does.
 constexpr float kAcross = 0.3F;
 
 constexpr float kNeverFlat = std::numeric_limits<float>::max();
@@ -81,10 +82,10 @@ public:
     first_index_ = static_cast<std::size_t>(lines_.begin[m]);
     computeSmoothness(line_.points, parameters_.neighbors_each_side, parameters_.smoothness, line_.sigma);
     markUnfit(line_.points, parameters_, line_.unfit);
+    threshold_ = edgeThreshold();  // by all points of the line, asked for or not
     markNotAsked();
     line_.sharpness.resize(line_.sigma.size());
     line_.flatness.resize(line_.sigma.size());
-    threshold_ = edgeThreshold();
     rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), threshold_, parameters_.plane_threshold,
          line_.sharpness.data(), line_.flatness.data());
 

@@ -9,9 +9,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// An unconstrained direction's eigenvalue in the covariance: large variance, still finite.
-constexpr double kNoInformation = 1e-9;
-
 using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solvers do not take unaligned types
 
 }  // namespace
@@ -84,8 +81,8 @@ Matrix6 InformationAnalysis::strongProjection() const
 std::vector<WeakDirection> InformationAnalysis::weakDirections() const
 {
   std::vector<WeakDirection> weak;
-  for (int i = 0; i < 6 && eigenvalues_[i] < weak_threshold_; ++i) {
-    weak.push_back({eigenvectors_.col(i), eigenvalues_[i]});
+  for (int i = 0; i < 6 && weak_threshold_ > 0.0 && eigenvalues_[i] < weak_threshold_; ++i) {
+    weak.push_back({eigenvectors_.col(i), std::max(0.0, eigenvalues_[i])});
   }
   return weak;
 }

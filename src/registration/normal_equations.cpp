@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kChunk = 256;
 
-/// Every so many-th plane tells of the noise for all: it is a mean over hundreds that is wanted.
+/// Of a chunk's linked planes, every so many-th tells of the noise for all: it is a mean over hundreds that is wanted.
 constexpr std::size_t kNoiseStride = 4;
 
 /// For normally distributed residuals, 1.4826 medians of the absolute value are one standard deviation; three of
@@ -165,8 +165,8 @@ void addRows(const Correspondence<EdgeFactor>& c, double weight, ChunkSums& sums
 }
 
 template <typename Factor>
-void accumulate(const Correspondence<Factor>& c, std::size_t place, RobustKernel kernel, double scale, ChunkSums& sums,
-                int& count, int& inliers)
+void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double scale, ChunkSums& sums, int& count,
+                int& inliers)
 {
   if (c.weight <= 0.0) {
     return;
@@ -175,7 +175,7 @@ void accumulate(const Correspondence<Factor>& c, std::size_t place, RobustKernel
   const double robust = robustWeight(kernel, squared, scale);
   const double weight = c.weight * robust;
   addRows(c, weight, sums);
-  if (place % kNoiseStride == 0) {
+  if (static_cast<std::size_t>(count) % kNoiseStride == 0) {
     addNoise(c, static_cast<double>(kNoiseStride) * weight, sums);
   }
   sums.scalars.cost += 0.5 * c.weight * robustCost(kernel, squared, scale);
@@ -210,10 +210,9 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
     const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
     for (std::size_t i = first; i < std::min(first + kChunk, total); ++i) {
       if (i < edges) {
-        accumulate(correspondences.edges[i], i, kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
+        accumulate(correspondences.edges[i], kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
       } else {
-        accumulate(correspondences.planes[i - edges], i - edges, kernel, scales.plane, sums, counts.planes,
-                   counts.plane_inliers);
+        accumulate(correspondences.planes[i - edges], kernel, scales.plane, sums, counts.planes, counts.plane_inliers);
       }
     }
   }

@@ -29,10 +29,11 @@ double medianVariance(const std::vector<Correspondence<PlaneFactor>>& planes)
 void weighByScatter(const std::vector<double>& weights, double scatter,
                     std::vector<Correspondence<PlaneFactor>>& planes)
 {
-  const double half = scatter * scatter * medianVariance(planes);
-  if (!(half > 0.0)) {
-    return;  // not asked for, or a map without noise
+  constexpr double kLeastVariance = 1e-6;  // m^2: no map is better than to a millimetre
+  if (!(scatter > 0.0)) {
+    return;
   }
+  const double half = scatter * scatter * std::max(kLeastVariance, medianVariance(planes));
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (planes[i].weight > 0.0) {
       planes[i].weight = weights[i] * half / (half + planes[i].variance);

@@ -397,6 +397,37 @@ TEST_F(NormalEquationsTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneWithD
   EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections().empty());
 }
 
+TEST_F(NormalEquationsTest, TheNoiseIsThatOfThePlanesThatAreLinked)
+{
+  const NormalEquations all = equationsOf(corridorOf(0.03, 0));
+  for (const std::size_t stride : {2U, 3U, 4U}) {
+    Correspondences some = corridorOf(0.03, 0);
+    for (std::size_t i = 0; i < some.planes.size(); ++i) {
+      some.planes[i].weight = i % stride == 0 ? 1.0 : 0.0;
+    }
+    const NormalEquations equations = equationsOf(some);
+    EXPECT_NEAR(equations.noise_information(0, 0) / equations.weight, all.noise_information(0, 0) / all.weight,
+                0.1 * all.noise_information(0, 0) / all.weight)
+        << stride;
+  }
+}
+
+TEST_F(NormalEquationsTest, AWallWithoutAThresholdHasAPositiveCovarianceAndAFiniteStep)
+{
+  const SweepTrajectory still(SE3(), Vector6::Zero(), 0.5);
+  Correspondences correspondences = Scan(still, 0.05, 0, 500).along(still);
+  for (auto& c : correspondences.planes) {
+    c.point.z() = 0.0;
+    c.factor.center = Eigen::Vector3d(0.0, 0.0, 0.1);
+    c.factor.normal = Eigen::Vector3d::UnitZ();
+  }
+  const NormalEquations equations = equationsOf(correspondences);
+  const InformationAnalysis analysis(equations, 0.0);
+  EXPECT_LT(analysis.step().norm(), 0.2);
+  EXPECT_GT(analysis.covariance().diagonal().minCoeff(), 0.0);
+  EXPECT_TRUE(analysis.weakDirections().empty());
+}
+
 TEST_F(NormalEquationsTest, NoiseAlongWeakDirectionsIsNotFollowed)
 {
   // Normals that are a little off seem to tell something of x and y, and noise in the distances turns it into metres.

@@ -29,7 +29,9 @@ struct WeakDirection {
   /// Unit direction in (translation, rotation) about the sensor's position, in the world's axes; rotation
   /// components are scaled by the scene's size, so that both are metres of displacement of a typical point.
   Vector6 direction = Vector6::Zero();
-  double eigenvalue = 0.0;  ///< of the scaled information over the sum of the weights; 0.1 to 1 where well constrained
+  /// Of the scaled information, without the noise of the normals, over the sum of the weights; >= 0, and 0.1 to 1 where
+  /// a direction is well constrained.
+  double eigenvalue = 0.0;
 };
 
 /// The outcome of one registration.
