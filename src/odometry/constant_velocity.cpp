@@ -110,7 +110,7 @@ MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twis
   MotionPrior prior;
   prior.pose = predicted;
   prior.twist = sweep_twist;
-  // A velocity that has just changed, mostly along one direction, may be wrong by twice as much.
+  // A velocity that has just changed, mostly along one direction, may be wrong by as much.
   const double pose_spread = std::clamp(2.0 * std::sqrt(3.0 * translation_), kLeastSpread, kMostSpread);
   prior.translation = spread(pose_spread, std::max(translation_, kLeastChange * kLeastChange));
   prior.rotation = spread(kPoseRotation, std::max(rotation_, kLeastTurn * kLeastTurn));

@@ -36,8 +36,8 @@ FeatureSet sampleOf(const FeatureSet& features)
 
 /// Two scans a motion apart, and distorted by it: every landmark is needed, and none is good to millimetres.
 ///
-/// With the settings for the rest of the way, which hold edges for imprecise, the real drive of the tests, its edges
-/// left out or weighed less, was thought to start at 2.8 m/s instead of 13.
+/// With the settings for the rest of the way, which hold edges for imprecise, the real drive of the tests, when its
+/// edges were left out or weighed less, was thought to start at 2.8 m/s instead of 13.
 RegistrationParameters forTheStart(RegistrationParameters parameters)
 {
   parameters.edge_weight = std::max(0.5, parameters.edge_weight);

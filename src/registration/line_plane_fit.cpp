@@ -44,7 +44,7 @@ double extrapolation(const Distribution& points)
 /// Points that scatter by sigma across a plane, and along an axis by s, leave its normal off by sigma / (s sqrt(k)).
 ///
 /// The scatter about a plane fitted to the same k points is less than that about the true one by (k - 3) / k; points of
-/// the map, being means of voxels, are off together. Against smooth corridors, half as much again as sigma fits.
+/// the map, being means of voxels, are off together. Against smooth corridors, half as much variance again fits.
 Eigen::Vector3d tiltAlong(const Distribution& points, int axis, int count)
 {
   constexpr double kHalfAsMuchAgain = 1.5;  // of the variance

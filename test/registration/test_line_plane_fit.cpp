@@ -53,7 +53,7 @@ TEST(PlaneFit, FindsAPlane)
 
 TEST(PlaneFit, ItsVarianceIsTheScatterAcrossAndGrowsBeside)
 {
-  // Five points of a square with 1 m sides and its centre, two corners 3 cm above the others' plane.
+  // Five points of a square with 1 m sides and its centre, two corners 3 cm above it, two below.
   const auto varianceAt = [](double aside) {
     std::vector<Eigen::Vector3d> points = {
         {0.5, 0.5, 0.03}, {-0.5, -0.5, 0.03}, {0.5, -0.5, -0.03}, {-0.5, 0.5, -0.03}, {0.0, 0.0, 0.0}};

@@ -26,7 +26,8 @@ struct FeatureParameters {
   /// m; an edge needs a smoothness of more than this, above the range noise. Reasonable: 0.02 to 0.1
   float edge_threshold = 0.1F;
   /// And of more than this times the median smoothness of its scan line, which is two thirds of the range noise on
-  /// smooth surfaces: noise of 5 cm would make edges everywhere. For the vector sum; >= 0. Reasonable: 3 to 8
+  /// smooth surfaces: without it noise of 5 cm makes edges everywhere. For the vector sum; >= 0, 0: off.
+  /// Reasonable: 3 to 8
   float edge_noise_ratio = 5.0F;
   /// An edge needs a smoothness of more than this times the mean distance to its neighbours: 0 on a line,
   /// 0.7 at a right-angled corner, 1 at the end of a surface.
