@@ -47,9 +47,9 @@ double extrapolation(const Distribution& points)
 /// the map, being means of voxels, are off together. Against smooth corridors, half as much variance again fits.
 Eigen::Vector3d tiltAlong(const Distribution& points, int axis, int count)
 {
-  constexpr double kHalfAsMuchAgain = 1.5;  // of the variance
+  constexpr double kVarianceFactor = 1.5;
   const Eigen::Vector3d& eigenvalues = points.solver.eigenvalues();
-  return std::sqrt(kHalfAsMuchAgain * std::max(0.0, eigenvalues[0]) / (count * eigenvalues[axis])) *
+  return std::sqrt(kVarianceFactor * std::max(0.0, eigenvalues[0]) / (count * eigenvalues[axis])) *
          points.solver.eigenvectors().col(axis);
 }
 

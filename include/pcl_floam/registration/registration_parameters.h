@@ -68,7 +68,7 @@ struct RegistrationParameters {
   int max_features = 1500;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
-  /// weak: the guess is kept along them. What the noise of the planes' normals feigns is taken off first. Well
+  /// weak: the guess is kept along them. What only the noise of the planes' normals seems to tell is taken off. Well
   /// constrained directions have 0.1 to 1, the way along a corridor with doors 0.001. [0, 0.1]; 0 follows every
   /// direction.
   double weak_threshold = 2e-4;
