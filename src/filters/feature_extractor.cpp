@@ -1,5 +1,6 @@
 #include <pcl_floam/filters/feature_extractor.h>
 
+#include "common/median.h"
 #include "common/multi_version.h"
 #include "common/parameter_check.h"
 #include "filters/line_points.h"
@@ -124,12 +125,7 @@ private:
         line_.sample.push_back(line_.sigma[n]);
       }
     }
-    if (line_.sample.empty()) {
-      return parameters_.edge_threshold;
-    }
-    const auto middle = line_.sample.begin() + static_cast<std::ptrdiff_t>(line_.sample.size() / 2);
-    std::nth_element(line_.sample.begin(), middle, line_.sample.end());
-    return std::max(parameters_.edge_threshold, parameters_.edge_noise_ratio * *middle);
+    return std::max(parameters_.edge_threshold, parameters_.edge_noise_ratio * medianOf(line_.sample));
   }
 
   /// The points of highest smoothness, at least a neighbourhood apart.

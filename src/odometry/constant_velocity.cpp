@@ -1,5 +1,7 @@
 #include "odometry/constant_velocity.h"
 
+#include "common/median.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,10 +22,8 @@ double ScanClock::period() const
   if (given_period_ > 0.0 || recent_.empty()) {
     return given_period_;
   }
-  std::vector<double> sorted = recent_;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  std::vector<double> recent = recent_;
+  return medianOf(recent);
 }
 
 double ScanClock::tick(std::optional<double> stamp)

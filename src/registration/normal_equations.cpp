@@ -1,5 +1,6 @@
 #include "registration/normal_equations.h"
 
+#include "common/median.h"
 #include "registration/robust_kernel.h"
 
 #include <algorithm>
@@ -30,12 +31,7 @@ double medianResidual(const std::vector<Correspondence<Factor>>& correspondences
       squares.push_back(c.factor.squaredResidual(c.point));
     }
   }
-  if (squares.empty()) {
-    return 0.0;
-  }
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return std::sqrt(*middle);
+  return std::sqrt(medianOf(squares));
 }
 
 /// The sums of one chunk: upper triangles, row by row, so that the compiler can keep to straight lines.

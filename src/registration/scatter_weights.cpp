@@ -1,5 +1,7 @@
 #include "registration/scatter_weights.h"
 
+#include "common/median.h"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -16,12 +18,7 @@ double medianVariance(const std::vector<Correspondence<PlaneFactor>>& planes)
       variances.push_back(plane.variance);
     }
   }
-  if (variances.empty()) {
-    return 0.0;
-  }
-  const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
-  std::nth_element(variances.begin(), middle, variances.end());
-  return *middle;
+  return medianOf(variances);
 }
 
 }  // namespace

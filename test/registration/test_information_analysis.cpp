@@ -1,0 +1,154 @@
+// Which directions the correspondences constrain, and what follows where they don't.
+#include "registration/information_analysis.h"
+#include "registration/normal_equations.h"
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pcl_floam::test {
+namespace {
+
+Eigen::Vector3d randomVector(std::mt19937& random, double limit)
+{
+  return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
+}
+
+/// Points of a level floor, which the map has higher.
+Correspondences floorOf(double higher)
+{
+  std::mt19937 random(1);
+  Correspondences correspondences;
+  correspondences.planes.resize(500);
+  for (auto& c : correspondences.planes) {
+    c.point = randomVector(random, 15.0);
+    c.point.z() = 0.0;
+    c.weight = 1.0 + uniform(random, 0.5);
+    c.factor = {Eigen::Vector3d(0.0, 0.0, higher), Eigen::Vector3d::UnitZ()};
+  }
+  return correspondences;
+}
+
+class InformationAnalysisTest : public testing::Test {
+protected:
+  NormalEquations equationsOf(const Correspondences& correspondences) const
+  {
+    return buildNormalEquations(problem_, correspondences, {0.2, 0.1});
+  }
+
+  FeatureTarget target_;
+  RegistrationParameters parameters_;
+  RegistrationProblem problem_{target_, parameters_, Eigen::Vector3d::Zero()};
+};
+
+TEST_F(InformationAnalysisTest, AWallLeavesThreeDirectionsWeak)
+{
+  const NormalEquations equations = equationsOf(floorOf(0.1));
+  const InformationAnalysis analysis(equations, 1e-4);
+  const auto weak = analysis.weakDirections();
+  ASSERT_EQ(weak.size(), 3U);
+  for (const WeakDirection& direction : weak) {  // x, y and the rotation about z
+    EXPECT_NEAR(direction.direction[2], 0.0, 1e-9);
+    EXPECT_NEAR(direction.direction[3], 0.0, 1e-9);
+    EXPECT_NEAR(direction.direction[4], 0.0, 1e-9);
+  }
+  const Vector6 step = analysis.step();
+  EXPECT_NEAR(step[2], 0.1, 1e-9);
+  EXPECT_NEAR(step[0], 0.0, 1e-9);
+  EXPECT_NEAR(step[1], 0.0, 1e-9);
+  EXPECT_NEAR(step[5], 0.0, 1e-9);
+  EXPECT_TRUE(analysis.covariance().allFinite());
+  EXPECT_GT(analysis.covariance()(0, 0), 1e3 * analysis.covariance()(2, 2));
+}
+
+/// The walls, floor and ceiling of a corridor along x whose fitted normals are off by some standard deviation, and the
+/// door frames across it.
+Correspondences corridorOf(double tilt, std::size_t frames)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> off(0.0, tilt);
+  Correspondences correspondences;
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const bool on_frame = i < frames;
+    const Eigen::Vector3d side = i % 2 == 0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d other = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
+    Correspondence<PlaneFactor> c;
+    c.point = uniform(random, 15.0) * Eigen::Vector3d::UnitX() + (i % 4 < 2 ? 1.5 : -1.5) * side +
+              uniform(random, 1.5) * other;
+    c.weight = 1.0;
+    c.tilt = {tilt * Eigen::Vector3d::UnitX(), tilt * other};
+    const Eigen::Vector3d normal = side + off(random) * Eigen::Vector3d::UnitX() + off(random) * other;
+    c.factor = {c.point + randomVector(random, 0.01), on_frame ? Eigen::Vector3d(Eigen::Vector3d::UnitX()) : normal};
+    correspondences.planes.push_back(c);
+  }
+  return correspondences;
+}
+
+TEST_F(InformationAnalysisTest, WhatTheNormalsNoiseFeignsIsKnown)
+{
+  const NormalEquations equations = equationsOf(corridorOf(0.03, 0));
+  EXPECT_GT(equations.information(0, 0), 0.0);
+  EXPECT_NEAR(equations.noise_information(0, 0) / equations.information(0, 0), 1.0, 0.1);
+  EXPECT_LT(equations.noise_information(1, 1), 0.01 * equations.information(1, 1));
+}
+
+TEST_F(InformationAnalysisTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneWithDoorsIsNot)
+{
+  const NormalEquations smooth = equationsOf(corridorOf(0.03, 0));
+  const InformationAnalysis analysis(smooth, 2e-4);
+  const auto weak = analysis.weakDirections();
+  ASSERT_EQ(weak.size(), 1U);
+  EXPECT_GT(std::abs(weak.front().direction[0]), 0.99);
+  EXPECT_LT(std::abs(analysis.step()[0]), 1e-3);
+  EXPECT_GT(analysis.covariance()(0, 0), 100.0 * analysis.covariance()(1, 1));
+  EXPECT_TRUE(InformationAnalysis(smooth, 0.0).weakDirections().empty());
+
+  EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections().empty());
+}
+
+TEST_F(InformationAnalysisTest, TheNoiseIsThatOfThePlanesThatAreLinked)
+{
+  const NormalEquations all = equationsOf(corridorOf(0.03, 0));
+  for (const std::size_t stride : {2U, 3U, 4U}) {
+    Correspondences some = corridorOf(0.03, 0);
+    for (std::size_t i = 0; i < some.planes.size(); ++i) {
+      some.planes[i].weight = i % stride == 0 ? 1.0 : 0.0;
+    }
+    const NormalEquations equations = equationsOf(some);
+    EXPECT_NEAR(equations.noise_information(0, 0) / equations.weight, all.noise_information(0, 0) / all.weight,
+                0.1 * all.noise_information(0, 0) / all.weight)
+        << stride;
+  }
+}
+
+TEST_F(InformationAnalysisTest, AWallWithoutAThresholdHasAPositiveCovarianceAndAFiniteStep)
+{
+  const NormalEquations equations = equationsOf(floorOf(0.1));
+  const InformationAnalysis analysis(equations, 0.0);
+  EXPECT_LT(analysis.step().norm(), 0.2);
+  EXPECT_GT(analysis.covariance().diagonal().minCoeff(), 0.0);
+  EXPECT_TRUE(analysis.weakDirections().empty());
+}
+
+TEST_F(InformationAnalysisTest, NoiseAlongWeakDirectionsIsNotFollowed)
+{
+  // Normals that are a little off seem to tell something of x and y, and noise in the distances turns it into metres.
+  std::mt19937 random(3);
+  Correspondences correspondences = floorOf(0.1);
+  for (auto& c : correspondences.planes) {
+    c.factor.center = c.point + Eigen::Vector3d(0.0, 0.0, 0.1 + uniform(random, 0.05));
+    c.factor.normal = Eigen::Vector3d(uniform(random, 0.005), uniform(random, 0.005), 1.0).normalized();
+  }
+  parameters_.kernel = RobustKernel::none;
+  const NormalEquations equations = equationsOf(correspondences);
+  const Vector6 followed = InformationAnalysis(equations, 0.0).step();
+  const InformationAnalysis analysis(equations, 1e-4);
+  EXPECT_EQ(analysis.weakDirections().size(), 3U);
+  EXPECT_GT(followed.head<2>().norm(), 0.05);
+  EXPECT_LT(analysis.step().head<2>().norm(), 0.005);
+  EXPECT_NEAR(analysis.step()[2], 0.1, 0.01);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
