@@ -170,7 +170,7 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
             "robust kernel on the residuals");
   app.add_flag_callback(
       "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
-  addNumber(app, "--max-features", p.max_features, "N", "most planes that are registered; edges: a quarter");
+  addNumber(app, "--max-features", p.max_features, "N", "most planes that are registered; edges: a sixth");
   addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
   addNumber(app, "--plane-scatter", p.plane_scatter, "RATIO",
             "a plane whose map points scatter so many times more\nthan usual counts half; 0: all count alike");

@@ -4,18 +4,19 @@ namespace pcl_floam {
 
 void SweepTrajectory::tabulate()
 {
-  still_ = twist_.isZero(0.0);
+  still_ = twist_.isZero(0.0) && acceleration_.isZero(0.0);
   if (still_) {
     return;
   }
-  const SE3 step = exp(twist_ / kSteps);
-  poses_[0] = pose_ * exp(-reference_ * twist_);
-  for (std::size_t k = 1; k < poses_.size(); ++k) {
-    poses_[k] = poses_[k - 1] * step;
+  for (std::size_t k = 0; k < poses_.size(); ++k) {
+    const double since = static_cast<double>(k) / kSteps - reference_;
+    poses_[k] = pose_ * exp(since * twist_ + 0.5 * since * since * acceleration_);
   }
-  // Ad(T) xi
+  // Ad(T) xi, Ad(T) alpha
   angular_velocity_ = pose_.rotation * twist_.tail<3>();
   velocity_ = pose_.rotation * twist_.head<3>() + pose_.translation.cross(angular_velocity_);
+  angular_acceleration_ = pose_.rotation * acceleration_.tail<3>();
+  linear_acceleration_ = pose_.rotation * acceleration_.head<3>() + pose_.translation.cross(angular_acceleration_);
 }
 
 SweepTrajectory SweepTrajectory::perturbed(const Vector6& delta, const Vector6& epsilon) const
@@ -25,12 +26,12 @@ SweepTrajectory SweepTrajectory::perturbed(const Vector6& delta, const Vector6& 
     return pose;
   };
   if (epsilon.isZero(0.0)) {
-    return {cleaned(exp(delta) * pose_), twist_, reference_};
+    return {cleaned(exp(delta) * pose_), twist_, reference_, acceleration_};
   }
   const SE3 start = exp(delta - reference_ * epsilon) * pose_ * exp(-reference_ * twist_);
   const SE3 end = exp(delta + (1.0 - reference_) * epsilon) * pose_ * exp((1.0 - reference_) * twist_);
   const Vector6 twist = log(start.inverse() * end);
-  return {cleaned(start * exp(reference_ * twist)), twist, reference_};
+  return {cleaned(start * exp(reference_ * twist)), twist, reference_, acceleration_};
 }
 
 }  // namespace pcl_floam

@@ -9,21 +9,26 @@
 
 namespace pcl_floam {
 
-/// The sensor's poses during one sweep: T(s) = T(r) exp((s - r) xi) (Eq. 3, 4).
+/// The sensor's poses during one sweep: T(s) = T(r) exp((s - r) xi + (s - r)^2 alpha / 2); without alpha Eq. 3 and 4.
 ///
 /// How a point moves with the unknowns is simple: a perturbation delta of the pose at r and epsilon of the twist, both
 /// on the left (Eq. 11), move the point measured at s as delta + (s - r) epsilon would move a rigid scan. A scan that
 /// moves as one has epsilon = 0.
 class SweepTrajectory {
 public:
-  SweepTrajectory(const SE3& target_T_sensor, const Vector6& twist, double reference)
-      : pose_(target_T_sensor), twist_(twist), reference_(reference)
+  /// \param twist        xi, motion over the sweep
+  /// \param reference    r in [0, 1], the instant of the pose
+  /// \param acceleration alpha, change of the twist over the sweep
+  SweepTrajectory(const SE3& target_T_sensor, const Vector6& twist, double reference,
+                  const Vector6& acceleration = Vector6::Zero())
+      : pose_(target_T_sensor), twist_(twist), acceleration_(acceleration), reference_(reference)
   {
     tabulate();
   }
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
   [[nodiscard]] const Vector6& twist() const { return twist_; }
+  [[nodiscard]] const Vector6& acceleration() const { return acceleration_; }
 
   /// Time from the reference instant.
   [[nodiscard]] double sinceReference(double time) const { return time - reference_; }
@@ -37,27 +42,33 @@ public:
     const double place = std::clamp(time, 0.0, 1.0) * kSteps;
     const auto step = static_cast<int>(place + 0.5);
     const Eigen::Vector3d near = poses_[static_cast<std::size_t>(step)] * point;
-    // The rest of the way to second order: half a step of a turn of 1 rad leaves 1e-7 rad out of account.
+    // The rest of the way to second order: half a step of a turn of 1 rad leaves 5e-6 rad out of account.
     const double rest = (place - step) / kSteps;
-    const Eigen::Vector3d velocity = velocity_ + angular_velocity_.cross(near);
-    return near + rest * (velocity + 0.5 * rest * angular_velocity_.cross(velocity));
+    const double since = static_cast<double>(step) / kSteps - reference_ + 0.5 * rest;
+    const Eigen::Vector3d angular_velocity = angular_velocity_ + since * angular_acceleration_;
+    const Eigen::Vector3d velocity = velocity_ + since * linear_acceleration_ + angular_velocity.cross(near);
+    return near + rest * (velocity + 0.5 * rest * angular_velocity.cross(velocity));
   }
 
   /// The trajectory perturbed on the left by \p delta at the reference instant and \p epsilon over the sweep.
   [[nodiscard]] SweepTrajectory perturbed(const Vector6& delta, const Vector6& epsilon) const;
 
 private:
-  static constexpr int kSteps = 64;
+  static constexpr int kSteps = 16;
 
   void tabulate();
 
   SE3 pose_;
   Vector6 twist_;
+  Vector6 acceleration_;
   double reference_;
   bool still_ = true;
   std::array<SE3, kSteps + 1> poses_;
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  ///< spatial: the same all through the sweep
+  // Spatial: without acceleration the same all through the sweep.
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d angular_velocity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear_acceleration_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d angular_acceleration_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace pcl_floam

@@ -38,7 +38,7 @@ void compensate(const std::vector<Feature>& features, const SweepMotion& motion,
   if (motion.isStill()) {
     return;
   }
-  const SweepTrajectory trajectory(SE3(), motion.twist(), motion.reference());
+  const SweepTrajectory trajectory(SE3(), motion.twist(), motion.reference(), motion.acceleration());
   for (Feature& feature : compensated) {
     const Eigen::Vector3d point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
     feature.x = static_cast<float>(point.x());

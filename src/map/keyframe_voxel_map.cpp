@@ -35,9 +35,12 @@ struct KeyframeVoxelMap::Impl {
 
   void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor)
   {
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(features.size());
     for (const Feature& feature : features) {
-      layer_of_kind.insert(world_T_sensor * Eigen::Vector3d(feature.x, feature.y, feature.z));
+      points.push_back(world_T_sensor * Eigen::Vector3d(feature.x, feature.y, feature.z));
     }
+    layer_of_kind.insertEach(points.data(), points.size());
   }
 
   /// Cropping touches every block, so it is done once the sensor has gone a tenth of the horizon.

@@ -3,8 +3,9 @@
 #pragma once
 
 #include "common/prefetch.h"
+#include "map/nearest_so_far.h"
 
-#include <pcl_floam/map/neighbor_search.h>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -21,29 +22,6 @@ struct BlockKey {
   std::int32_t z = 0;
 
   bool operator==(const BlockKey& other) const { return x == other.x && y == other.y && z == other.z; }
-};
-
-/// The k nearest neighbours found so far, and how near a point must be to count.
-struct NearestSoFar {
-  int k;
-  float limit;  ///< m^2
-  Neighbors& neighbors;
-
-  void add(const Eigen::Vector3f& offset, float squared_distance)
-  {
-    const bool full = neighbors.count == k;
-    if (full && squared_distance == limit) {
-      return;  // of equally near ones the first stays
-    }
-    int place = full ? k - 1 : neighbors.count++;
-    for (; place > 0 && neighbors[place - 1].squared_distance > squared_distance; --place) {
-      neighbors.neighbor[static_cast<std::size_t>(place)] = neighbors[place - 1];
-    }
-    neighbors.neighbor[static_cast<std::size_t>(place)] = {offset, squared_distance};
-    if (neighbors.count == k) {
-      limit = neighbors[k - 1].squared_distance;
-    }
-  }
 };
 
 /// One mean point per occupied voxel, relative to the block's lowest corner, in groups of four: the distances of a
@@ -88,7 +66,10 @@ public:
   /// \param corner of the block, seen from the query
   void search(const Eigen::Vector3f& corner, NearestSoFar& nearest) const
   {
-    for (const Group& group : groups_) {
+    nearest.enter({corner, this});
+    float limit = nearest.limit();
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const Group& group = groups_[g];
       std::array<float, kLanes> squared;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         const float x = corner.x() + group.x[lane];
@@ -97,15 +78,15 @@ public:
         squared[lane] = x * x + y * y + z * z;
       }
       const float least = std::min(std::min(squared[0], squared[1]), std::min(squared[2], squared[3]));
-      if (least > nearest.limit) {
+      if (least > limit) {
         continue;
       }
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        if (squared[lane] <= nearest.limit) {
-          nearest.add({corner.x() + group.x[lane], corner.y() + group.y[lane], corner.z() + group.z[lane]},
-                      squared[lane]);
+        if (squared[lane] <= limit) {
+          nearest.add(squared[lane], g * kLanes + lane);
         }
       }
+      limit = nearest.limit();
     }
   }
 

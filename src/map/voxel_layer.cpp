@@ -3,6 +3,7 @@
 #include "common/prefetch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pcl_floam {
@@ -155,10 +156,38 @@ std::int32_t VoxelLayer::findOrAddBlock(const BlockKey& key)
 
 void VoxelLayer::insert(const Eigen::Vector3d& point)
 {
-  if (!isRepresentable(point)) {
-    return;
+  if (isRepresentable(point)) {
+    insertAt(blockQuery(point));
   }
-  const BlockQuery place = blockQuery(point);
+}
+
+void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count)
+{
+  constexpr std::size_t kTogether = 16;
+  std::array<BlockQuery, kTogether> places;
+  for (std::size_t first = 0; first < count; first += kTogether) {
+    std::size_t together = 0;
+    for (std::size_t i = first; i < std::min(first + kTogether, count); ++i) {
+      if (isRepresentable(points[i])) {
+        places[together] = blockQuery(points[i]);
+        prefetchEntry(places[together].key);
+        ++together;
+      }
+    }
+    for (std::size_t i = 0; i < together; ++i) {
+      const std::int32_t block = findBlock(places[i].key);
+      if (block != kNone) {
+        prefetch(&blocks_[static_cast<std::size_t>(block)], sizeof(VoxelBlock));
+      }
+    }
+    for (std::size_t i = 0; i < together; ++i) {
+      insertAt(places[i]);
+    }
+  }
+}
+
+void VoxelLayer::insertAt(const BlockQuery& place)
+{
   if (last_block_ == kNone || !(blocks_[static_cast<std::size_t>(last_block_)].key == place.key)) {
     last_block_ = findOrAddBlock(place.key);
   }
@@ -173,17 +202,26 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
         block_size_ * (Eigen::Vector3d(block.key.x, block.key.y, block.key.z).array() + 0.5).matrix();
     return (middle - center).squaredNorm() > radius * radius;
   };
-  const auto far_begin = std::remove_if(blocks_.begin(), blocks_.end(), isFar);
-  if (far_begin == blocks_.end()) {
+  // Where each block goes; those that stay keep their order.
+  std::vector<std::int32_t> moved(blocks_.size(), kNone);
+  std::int32_t kept = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    if (!isFar(blocks_[b])) {
+      moved[b] = kept++;
+    }
+  }
+  if (static_cast<std::size_t>(kept) == blocks_.size()) {
     return;
   }
-  blocks_.erase(far_begin, blocks_.end());
+  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), isFar), blocks_.end());
   last_block_ = kNone;
   rebuildTable(table_.size());
   size_ = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    size_ += blocks_[b].size();
-    link(static_cast<std::int32_t>(b));
+  for (VoxelBlock& block : blocks_) {
+    size_ += block.size();
+    for (std::int32_t& other : block.around) {
+      other = other == kNone ? kNone : moved[static_cast<std::size_t>(other)];
+    }
   }
 }
 

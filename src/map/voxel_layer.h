@@ -26,6 +26,9 @@ public:
   /// billion blocks away, is left out.
   void insert(const Eigen::Vector3d& point);
 
+  /// \ref insert for \p count points, in their order; fetches for the later ones while it works on the first.
+  void insertEach(const Eigen::Vector3d* points, std::size_t count);
+
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
 
@@ -54,6 +57,7 @@ private:
   [[nodiscard]] BlockKey keyOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
+  void insertAt(const BlockQuery& place);
 
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
   void prefetchEntry(const BlockKey& key) const;
@@ -68,9 +72,9 @@ private:
   void searchAround(const BlockQuery& query, std::int32_t home, NearestSoFar& nearest) const;
 
   /// Calls \p visit(offset of the block's corner from the query, block) for the blocks within \p radius, nearest
-  /// ring first; \p squared_limit is read anew before each block, so that the caller can narrow the search.
-  template <typename Visit>
-  void visitBlocks(const BlockQuery& query, double radius, const float& squared_limit, Visit&& visit) const;
+  /// ring first; \p squaredLimit is asked anew before each block, so that the caller can narrow the search.
+  template <typename Limit, typename Visit>
+  void visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const;
 
   int voxels_per_axis_;
   float voxel_size_;

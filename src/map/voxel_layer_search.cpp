@@ -49,11 +49,11 @@ void VoxelLayer::searchAround(const BlockQuery& query, std::int32_t home, Neares
   for (const int dz : step_z) {
     for (const int dy : step_y) {
       const float gap_yz = along(gap_y, dy) + along(gap_z, dz);
-      if (gap_yz > nearest.limit) {
+      if (gap_yz > nearest.limit()) {
         continue;
       }
       for (const int dx : step_x) {
-        if (along(gap_x, dx) + gap_yz > nearest.limit) {
+        if (along(gap_x, dx) + gap_yz > nearest.limit()) {
           continue;
         }
         const auto place = static_cast<std::size_t>(13L + 9L * dz + 3L * dy + dx);
@@ -70,8 +70,8 @@ void VoxelLayer::searchAround(const BlockQuery& query, std::int32_t home, Neares
   }
 }
 
-template <typename Visit>
-void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const float& squared_limit, Visit&& visit) const
+template <typename Limit, typename Visit>
+void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const
 {
   const auto size = static_cast<float>(block_size_);
   const auto visitOne = [&](const BlockKey& key, const VoxelBlock* block) {
@@ -80,7 +80,7 @@ void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const float
                                  static_cast<float>(static_cast<double>(key.z) - query.key.z) * size);
     if (squaredGap(query.offset.x(), corner.x(), size) + squaredGap(query.offset.y(), corner.y(), size) +
             squaredGap(query.offset.z(), corner.z(), size) >
-        squared_limit) {
+        squaredLimit()) {
       return;
     }
     const std::int32_t found = block == nullptr ? findBlock(key) : VoxelBlock::kNone;
@@ -117,14 +117,16 @@ void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Nei
   if (!isRepresentable(query)) {
     return;
   }
-  NearestSoFar nearest{k, static_cast<float>(radius * radius), neighbors};
+  NearestSoFar nearest(k, static_cast<float>(radius * radius));
+  const BlockQuery place = blockQuery(query);
   if (radius <= block_size_) {
-    const BlockQuery place = blockQuery(query);
     searchAround(place, findBlock(place.key), nearest);
-    return;
+  } else {
+    visitBlocks(
+        place, radius, [&] { return nearest.limit(); },
+        [&](const Eigen::Vector3f& corner, const VoxelBlock& block) { block.search(corner, nearest); });
   }
-  visitBlocks(blockQuery(query), radius, nearest.limit,
-              [&](const Eigen::Vector3f& corner, const VoxelBlock& block) { block.search(corner, nearest); });
+  nearest.write(neighbors, &VoxelBlock::point);
 }
 
 void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
@@ -160,8 +162,9 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
     for (std::size_t i = 0; i < together; ++i) {
       neighbors[first + i].count = 0;
       if (isRepresentable(queries[first + i])) {
-        NearestSoFar nearest{k, static_cast<float>(radius * radius), neighbors[first + i]};
+        NearestSoFar nearest(k, static_cast<float>(radius * radius));
         searchAround(places[i], homes[i], nearest);
+        nearest.write(neighbors[first + i], &VoxelBlock::point);
       }
     }
   }
@@ -174,14 +177,16 @@ void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector
     return;
   }
   const auto limit = static_cast<float>(radius * radius);
-  visitBlocks(blockQuery(query), radius, limit, [&](const Eigen::Vector3f& corner, const VoxelBlock& block) {
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      const Eigen::Vector3f offset = corner + block.point(i);
-      if (offset.squaredNorm() <= limit) {
-        neighbors.push_back({offset, offset.squaredNorm()});
-      }
-    }
-  });
+  visitBlocks(
+      blockQuery(query), radius, [limit] { return limit; },
+      [&](const Eigen::Vector3f& corner, const VoxelBlock& block) {
+        for (std::size_t i = 0; i < block.size(); ++i) {
+          const Eigen::Vector3f offset = corner + block.point(i);
+          if (offset.squaredNorm() <= limit) {
+            neighbors.push_back({offset, offset.squaredNorm()});
+          }
+        }
+      });
 }
 
 }  // namespace pcl_floam

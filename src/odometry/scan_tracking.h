@@ -53,8 +53,8 @@ struct OdometryPipeline::Impl {
   SE3 world_T_keyframe;  ///< last keyframe
   double periods = 1.0;  ///< from the last scan to this one
   double periods_since_tracked = 0.0;
-  double sweep_fraction = 1.0;            ///< duration of the sweep in periods
-  Vector6 sweep_twist = Vector6::Zero();  ///< motion over the last sweep
+  double sweep_fraction = 1.0;                          ///< duration of the sweep in periods
+  SweepMotion last_sweep{Vector6::Zero(), kReference};  ///< motion during the last sweep
   bool started = false;
   int failed_starts = 0;
   std::optional<MapUse> prior_map;  ///< of a map that was there before the first scan
@@ -133,12 +133,6 @@ struct OdometryPipeline::Impl {
   // Motion Estimation (Eq. 2)
   void predictMotion() { world_T_predicted = world_T_last * velocity.motion(periods); }
 
-  // Distortion Compensation, both stages (Eq. 3, 4 with the predicted motion, Eq. 12 with the optimised one)
-  static void compensate(const FeatureSet& features, const Vector6& twist, FeatureSet& result)
-  {
-    pcl_floam::compensate(features, SweepMotion(twist, kReference), result);
-  }
-
   // Pose Estimation (Eq. 5 to 14)
   void estimatePose()
   {
@@ -174,6 +168,8 @@ struct OdometryPipeline::Impl {
     if (parameters.compensation == CompensationMode::continuous) {
       sweep.freedom = SweepFreedom::free;
       sweep.prior = velocity_noise.prior(guess, sweep.twist, periods_since_tracked, sweep_fraction);
+      sweep.last_twist = last_sweep.twist();
+      sweep.sweeps_since_last = std::max(1.0, periods_since_tracked) / sweep_fraction;
     }
     return sweep;
   }
@@ -196,17 +192,30 @@ struct OdometryPipeline::Impl {
   /// Motion per period after the registration (Eq. 12a).
   ///
   /// The motion between two poses is the velocity of half a period ago; the twist of the sweep is that of now, but
-  /// noisier. Their mean is the better prediction.
+  /// noisier. Their mean is the better prediction. That of turns goes half a period ahead with the acceleration, which
+  /// halves its error in the hand; along a corridor or a highway it would carry on what noise there is.
   [[nodiscard]] Vector6 optimizedTwist() const
   {
     if (!velocity.isKnown()) {  // in a map made before: what was estimated is how far off the first guess was
       return Vector6::Zero();
     }
-    Vector6 between = twistTo(report.registration.target_T_source);
+    const Vector6 between = twistTo(report.registration.target_T_source);
     if (parameters.compensation == CompensationMode::continuous && compensatedFraction() > 0.0) {
-      return 0.5 * between + 0.5 / sweep_fraction * report.registration.sweep_twist;
+      const RegistrationReport& estimate = report.registration;
+      Vector6 twist = 0.5 * between + 0.5 / sweep_fraction * estimate.sweep_twist;
+      twist.tail<3>() += 0.5 / (sweep_fraction * sweep_fraction) * estimate.sweep_acceleration.tail<3>();
+      return twist;
     }
     return between;
+  }
+
+  /// Motion during the sweep after the registration.
+  [[nodiscard]] SweepMotion optimizedSweep() const
+  {
+    if (parameters.compensation == CompensationMode::continuous) {
+      return SweepMotion(report.registration.sweep_twist, kReference, report.registration.sweep_acceleration);
+    }
+    return SweepMotion(compensatedFraction() * velocity.twist(), kReference);
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -230,8 +239,8 @@ struct OdometryPipeline::Impl {
   {
     map.clear();
     FeatureSet compensated;
-    sweep_twist = compensatedFraction() * twist;
-    compensate(first, sweep_twist, compensated);
+    last_sweep = SweepMotion(compensatedFraction() * twist, kReference);
+    compensate(first, last_sweep, compensated);
     world_T_tracked = initial_pose * instantToReference();
     world_T_keyframe = world_T_tracked;
     map.insert(compensated, world_T_tracked);
@@ -241,7 +250,7 @@ struct OdometryPipeline::Impl {
   [[nodiscard]] SE3 instantToReference() const
   {
     // Without compensation a scan has no instants: its one pose is that of the scan as it stands.
-    return exp((kReference - fractionOf(parameters.pose_instant)) * sweep_twist);
+    return last_sweep.at(fractionOf(parameters.pose_instant)).inverse();
   }
 
   // Mapping Building & Distortion Compensation Update (Eq. 12)
@@ -256,14 +265,12 @@ struct OdometryPipeline::Impl {
       }
       velocity.set(twist);
     }
-    sweep_twist = parameters.compensation == CompensationMode::continuous
-                      ? report.registration.sweep_twist
-                      : Vector6(compensatedFraction() * velocity.twist());
+    last_sweep = optimizedSweep();
     world_T_last = world_T_tracked = optimized;
     periods_since_tracked = 0.0;
     report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
     if (report.keyframe) {
-      compensate(measured, sweep_twist, undistorted);
+      compensate(measured, last_sweep, undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, optimized);
       world_T_keyframe = optimized;
@@ -306,7 +313,8 @@ struct OdometryPipeline::Impl {
     }
     world_T_last = world_T_last * velocity.motion(periods);
     if (parameters.compensation != CompensationMode::none) {
-      sweep_twist = sweep_fraction * velocity.twist();  // a blind scan has no times, but the sensor moves on
+      // A blind scan has no times, but the sensor moves on.
+      last_sweep = SweepMotion(sweep_fraction * velocity.twist(), kReference);
     }
     return finish(TrackingState::predicted);
   }

@@ -22,7 +22,7 @@ constexpr std::size_t kMaxStride = 4;
 constexpr double kNear = 10.0;
 
 /// An edge costs what a plane does, and says less.
-constexpr std::size_t kPlanesPerEdge = 4;
+constexpr std::size_t kPlanesPerEdge = 6;
 
 /// At most so many of the features, evenly taken.
 std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
@@ -91,7 +91,7 @@ private:
       const Vector6 motion = log(model.held_pose.inverse() * local_T_sensor);
       return {local_T_sensor, model.sweep_per_motion * motion, model.reference};
     }
-    return {local_T_sensor, model.twist, model.reference};
+    return {local_T_sensor, model.twist, model.reference, model.acceleration(model.twist)};
   }
 
   [[nodiscard]] SE3 pose() const
@@ -150,6 +150,10 @@ private:
     if (model_.freedom == SweepFreedom::follows_pose) {
       trajectory_ = startOf(model_, trajectory_.pose());
     }
+    if (model_.freedom == SweepFreedom::free) {
+      const Vector6& twist = trajectory_.twist();
+      trajectory_ = {trajectory_.pose(), twist, model_.reference, model_.acceleration(twist)};
+    }
     const bool searched_wide = search_radius_ > problem_.parameters.max_neighbor_distance;
     if (searched_wide) {
       search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
@@ -190,6 +194,7 @@ private:
     report_.residual_rms = std::sqrt(equations_.weighted_squares / equations_.weight);
     report_.information = equations_.information;
     report_.sweep_twist = trajectory_.twist();
+    report_.sweep_acceleration = trajectory_.acceleration();
     report_.covariance = model_.freedom == SweepFreedom::free
                              ? FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).poseCovariance()
                              : analysis.covariance();

@@ -25,7 +25,7 @@ struct PlaneFit {
   /// Variance of the neighbours across the plane, m^2. Beside the neighbours' centre it grows, as that of any line or
   /// plane fitted to scattered points does where it is prolonged.
   double variance;
-  /// By what the normal may be off along the plane's two axes, as vectors of one standard deviation each.
+  /// By what the normal may be off: its covariance is the sum of their outer products.
   std::array<Eigen::Vector3d, 2> tilt;
 };
 

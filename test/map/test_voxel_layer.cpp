@@ -91,6 +91,49 @@ TEST(VoxelLayer, NeighboursOfAManyBlockLayer)
   }
 }
 
+TEST(VoxelLayer, NeighboursOfManySparseBlocks)
+{
+  // One point in each block, and no near ones: the search comes through hundreds of blocks before it has its twenty.
+  std::mt19937 random(7);
+  VoxelLayer layer(0.2);
+  for (int x = -12; x < 12; ++x) {
+    for (int y = -12; y < 12; ++y) {
+      for (int z = -12; z < 12; ++z) {
+        layer.insert(Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) + randomPoint(random, kNear, 0.4));
+      }
+    }
+  }
+  const auto points = layer.points();
+  for (int n = 0; n < 20; ++n) {
+    const Eigen::Vector3d query = randomPoint(random, kNear, 6.0);
+    const auto expected = bruteForce(points, query, 5.0);
+    Neighbors neighbors;
+    layer.nearest(query, kMaxNeighbors, 5.0, neighbors);
+    ASSERT_EQ(neighbors.count, kMaxNeighbors);
+    for (int i = 0; i < neighbors.count; ++i) {
+      EXPECT_NEAR(neighbors[i].offset.norm(), expected[static_cast<std::size_t>(i)], 1e-5);
+    }
+  }
+}
+
+TEST(VoxelLayer, ManyPointsAtOnceAsOneByOne)
+{
+  std::mt19937 random(8);
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < 1003; ++i) {
+    points.push_back(randomPoint(random, kFar, 3.0));
+  }
+  points[500].x() = std::numeric_limits<double>::quiet_NaN();
+  VoxelLayer one_by_one(0.2);
+  for (const Eigen::Vector3d& point : points) {
+    one_by_one.insert(point);
+  }
+  VoxelLayer at_once(0.2);
+  at_once.insertEach(points.data(), points.size());
+  EXPECT_EQ(at_once.points(), one_by_one.points());
+  EXPECT_EQ(at_once.size(), one_by_one.size());
+}
+
 TEST(KdTreeSearch, AgreesWithTheVoxels)
 {
   for (const Eigen::Vector3d& center : {kNear, kFar}) {

@@ -3,6 +3,7 @@
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 namespace pcl_floam::test {
 namespace {
@@ -49,6 +50,54 @@ TEST(PlaneFit, FindsAPlane)
   ASSERT_TRUE(plane);
   EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-6);
   EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
+}
+
+TEST(PlaneFit, IsThatOfTheEigenvectors)
+{
+  std::mt19937 random(9);
+  RegistrationParameters parameters;
+  int planes = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const Eigen::Matrix3d axes = expSO3(randomTwist(random, 0.0, 2.0).tail<3>());
+    const Eigen::Vector3d center = randomTwist(random, 1.0, 0.0).head<3>();
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 5 + n % 4; ++i) {
+      const Eigen::Vector3d spread(uniform(random, 0.3), uniform(random, 0.1),
+                                   uniform(random, n % 2 == 0 ? 0.01 : 0.05));
+      points.push_back(center + axes * spread);
+    }
+    const Neighbors neighbors = neighborsAt(points);
+    Eigen::Matrix3Xd offsets(3, neighbors.count);
+    for (int i = 0; i < neighbors.count; ++i) {
+      offsets.col(i) = neighbors[i].offset.cast<double>();
+    }
+    const Eigen::Vector3d mean = offsets.rowwise().mean();
+    offsets.colwise() -= mean;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(offsets * offsets.transpose() / neighbors.count);
+    const Eigen::Vector3d& values = solver.eigenvalues();
+    const bool is_plane =
+        values[1] > parameters.plane_ratio * values[0] && values[1] > parameters.plane_spread * values[2];
+    const auto plane = fitPlane(neighbors, parameters);
+    ASSERT_EQ(plane.has_value(), is_plane) << values.transpose();
+    if (!plane) {
+      continue;
+    }
+    ++planes;
+    EXPECT_NEAR(std::abs(plane->normal.dot(solver.eigenvectors().col(0))), 1.0, 1e-9);
+    EXPECT_LT((plane->center - mean).norm(), 1e-12);
+    double extrapolation = 1.0;
+    Eigen::Matrix3d tilt = Eigen::Matrix3d::Zero();
+    for (int axis = 1; axis < 3; ++axis) {
+      const Eigen::Vector3d direction = solver.eigenvectors().col(axis);
+      extrapolation += std::pow(direction.dot(mean), 2) / values[axis];
+      tilt += 1.5 * values[0] / (neighbors.count * values[axis]) * direction * direction.transpose();
+    }
+    EXPECT_NEAR(plane->variance, values[0] * extrapolation, 1e-6 * values[0] * extrapolation + 1e-12);
+    const Eigen::Matrix3d told =
+        plane->tilt[0] * plane->tilt[0].transpose() + plane->tilt[1] * plane->tilt[1].transpose();
+    EXPECT_LT((told - tilt).norm(), 1e-6 * tilt.norm() + 1e-12);
+  }
+  EXPECT_GT(planes, 500);
 }
 
 TEST(PlaneFit, ItsVarianceIsTheScatterAcrossAndGrowsBeside)

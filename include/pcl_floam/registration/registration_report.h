@@ -48,6 +48,7 @@ struct RegistrationReport {
   SE3 target_T_source;        ///< the result; the guess when it failed
   /// Motion over the sweep that goes with the result: as it was given, or as it was estimated.
   Vector6 sweep_twist = Vector6::Zero();
+  Vector6 sweep_acceleration = Vector6::Zero();  ///< change of that motion over the sweep
   /// J^T W J of the last iteration. Perturbation order (translation m, rotation rad), on the left, with the
   /// rotation about the sensor's position and the target's axes.
   Matrix6 information = Matrix6::Zero();

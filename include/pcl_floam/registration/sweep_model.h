@@ -47,6 +47,17 @@ struct SweepModel {
 
   /// With `free`.
   MotionPrior prior;
+  Vector6 last_twist = Vector6::Zero();  ///< of the sweep before
+  double sweeps_since_last = 0.0;        ///< time from that sweep to this one, in sweeps; 0: nothing is known of it
+
+  /// Change of the velocity over the sweep that goes with a twist: as it has changed since the sweep before.
+  [[nodiscard]] Vector6 acceleration(const Vector6& twist_now) const
+  {
+    if (freedom != SweepFreedom::free || !(sweeps_since_last > 0.0)) {
+      return Vector6::Zero();
+    }
+    return (twist_now - last_twist) / sweeps_since_last;
+  }
 };
 
 }  // namespace pcl_floam
