@@ -26,6 +26,11 @@ namespace pcl_floam {
 /// middle: handheld VLP-16 4.8 against 3.2 cm, urban HDL-64 0.30 against 0.17 %, and LOAM's compensation oscillates.
 inline constexpr double kReference = 0.5;
 
+/// A map of fewer keyframes may hold more of the traffic than of the world. Started in the middle of a column of cars
+/// at 25 m/s, a simulated drive of 1 km came to 0.71 %, and to 0.10 with features that are spread until then. All the
+/// way they make cities and clear highways a fifth worse.
+inline constexpr int kYoungMap = 60;
+
 /// Root mean square distance of the features: what a rotation error is multiplied with.
 inline double typicalRange(const FeatureSet& features)
 {
@@ -57,6 +62,7 @@ struct OdometryPipeline::Impl {
   SweepMotion last_sweep{Vector6::Zero(), kReference};  ///< motion during the last sweep
   bool started = false;
   int failed_starts = 0;
+  int keyframes = 0;
   std::optional<MapUse> prior_map;  ///< of a map that was there before the first scan
 
   ScanLines lines;
@@ -147,6 +153,7 @@ struct OdometryPipeline::Impl {
     run.guess_uncertainty = prediction_error.bound(periods_since_tracked);
     run.threads = parameters.threads;
     run.sweep = sweepModel(guess);
+    run.spread_features = !prior_map && keyframes < kYoungMap;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     return registerFeatures(measured, target, run, parameters.registration);
   }
@@ -274,6 +281,7 @@ struct OdometryPipeline::Impl {
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, optimized);
       world_T_keyframe = optimized;
+      ++keyframes;
     }
     report.milliseconds.map += watch.lap();
   }

@@ -2,6 +2,7 @@
 
 #include "registration/ceres_solver.h"
 #include "registration/correspondences.h"
+#include "registration/feature_sampling.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
 #include "registration/sweep_step.h"
@@ -24,15 +25,19 @@ constexpr double kNear = 10.0;
 /// An edge costs what a plane does, and says less.
 constexpr std::size_t kPlanesPerEdge = 6;
 
-/// At most so many of the features, evenly taken.
-std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
+/// The features that are registered.
+FeatureSet sampleOf(const FeatureSet& source, std::size_t most_planes, bool spread)
 {
-  const std::size_t count = std::min(most, features.size());
-  std::vector<Feature> taken(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    taken[i] = features[i * features.size() / count];
-  }
-  return taken;
+  constexpr float kCell = 2.0F;  // m
+  constexpr int kMostPerCell = 8;
+  const auto take = [spread](const std::vector<Feature>& features, std::size_t most) {
+    if (spread && features.size() > most) {
+      const std::vector<Feature> few = atMostPerCell(features, kCell, kMostPerCell);
+      return evenly(few.size() >= most ? few : features, most);
+    }
+    return evenly(features, most);
+  };
+  return {take(source.edges, most_planes / kPlanesPerEdge), take(source.planes, most_planes)};
 }
 
 std::vector<double> times(double factor, std::vector<double> weights)
@@ -258,9 +263,8 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  const auto most = static_cast<std::size_t>(parameters.max_features);
-  const FeatureSet thinned{evenly(source.edges, most / kPlanesPerEdge), evenly(source.planes, most)};
-  return PoseEstimation(thinned, target, run, parameters).run();
+  const FeatureSet sample = sampleOf(source, static_cast<std::size_t>(parameters.max_features), run.spread_features);
+  return PoseEstimation(sample, target, run, parameters).run();
 }
 
 }  // namespace pcl_floam
