@@ -11,6 +11,11 @@ namespace {
 
 using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solvers do not take unaligned types
 
+/// Neighbouring residuals share the errors of the map's planes and of the sweep's motion: so many say no more than one
+/// that is independent. In six simulated worlds, with exact maps and motion during the sweep, the normalised error
+/// squared is then 6 on average, from 1 (warehouse) to 15 (handheld, highway).
+constexpr double kResidualsPerIndependentOne = 7.0;
+
 }  // namespace
 
 InformationAnalysis::InformationAnalysis(const NormalEquations& equations, double weak_threshold)
@@ -64,7 +69,12 @@ Matrix6 InformationAnalysis::covariance() const
       inverse += eigenvectors_.col(i) * eigenvectors_.col(i).transpose() / kNoInformation;
     }
   }
-  return residualVariance() / equations_.weight * (scale_.asDiagonal() * inverse * scale_.asDiagonal());
+  return poseVariance() / equations_.weight * (scale_.asDiagonal() * inverse * scale_.asDiagonal());
+}
+
+double InformationAnalysis::poseVariance() const
+{
+  return kResidualsPerIndependentOne * meanWeight() * residualVariance();
 }
 
 Matrix6 InformationAnalysis::strongProjection() const

@@ -37,6 +37,9 @@ public:
   /// Weighted mean of the squared residuals, m^2.
   [[nodiscard]] double residualVariance() const { return equations_.weighted_squares / equations_.weight; }
 
+  /// Variance of a residual of weight 1, were they independent, as the poses' errors show it, m^2.
+  [[nodiscard]] double poseVariance() const;
+
   /// Mean of the given weights: what one correspondence counts in the sums.
   [[nodiscard]] double meanWeight() const { return equations_.given_weight / (equations_.edges + equations_.planes); }
 

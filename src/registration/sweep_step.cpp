@@ -6,9 +6,11 @@ namespace pcl_floam {
 
 namespace {
 
-/// Neighbouring residuals share the errors of the map and of the sensor, so that so many of them say no more than
-/// one that is independent.
-constexpr double kCorrelatedResiduals = 20.0;
+/// Neighbouring residuals share the errors of the map and of the sensor: so many of them say no more than one that is
+/// independent. Beside the motion prior they count for less than in the covariance, as what is common to a whole map
+/// does not show in them; the covariance's number is that of test_covariance_calibration.cpp.
+constexpr double kResidualsBesidePrior = 20.0;
+constexpr double kResidualsInCovariance = 3.0;
 
 /// Inverse of a 2x2 covariance.
 struct Precision {
@@ -61,34 +63,35 @@ MotionPriorTerm motionPriorTerm(const MotionPrior& prior, const SweepTrajectory&
 
 double independentVariance(const InformationAnalysis& analysis)
 {
-  return kCorrelatedResiduals * analysis.meanWeight() * analysis.residualVariance();
+  return kResidualsBesidePrior * analysis.meanWeight() * analysis.residualVariance();
 }
 
 FreeSweepSolver::FreeSweepSolver(const NormalEquations& equations, const InformationAnalysis& analysis,
                                  const MotionPrior& prior, const SweepTrajectory& now)
-    : variance_(independentVariance(analysis))
+    : analysis_(analysis), prior_(prior), now_(now)
 {
   const Matrix6 strong = analysis.strongProjection();
   const auto cleaned = [&](const Matrix6& m) { return Matrix6(strong.transpose() * m * strong); };
-  information_ << cleaned(equations.information), cleaned(equations.coupling), cleaned(equations.coupling),
+  measured_ << cleaned(equations.information), cleaned(equations.coupling), cleaned(equations.coupling),
       cleaned(equations.twist_information);
   gradient_ << strong.transpose() * equations.gradient, strong.transpose() * equations.twist_gradient;
-  const MotionPriorTerm term = motionPriorTerm(prior, now, variance_);
-  information_ += term.information;
-  gradient_ += term.information * term.error;
 }
 
 SweepStep FreeSweepSolver::step() const
 {
   using Matrix12d = Eigen::Matrix<double, 12, 12>;  // Eigen 3.4's solvers do not take unaligned types
-  const Vector12 solution = Matrix12d(information_).ldlt().solve(-gradient_);
+  const MotionPriorTerm term = motionPriorTerm(prior_, now_, independentVariance(analysis_));
+  const Vector12 gradient = gradient_ + term.information * term.error;
+  const Vector12 solution = Matrix12d(measured_ + term.information).ldlt().solve(-gradient);
   return {solution.head<6>(), solution.tail<6>()};
 }
 
 Matrix6 FreeSweepSolver::poseCovariance() const
 {
   using Matrix12d = Eigen::Matrix<double, 12, 12>;
-  return variance_ * Matrix12d(information_).ldlt().solve(Matrix12d::Identity()).topLeftCorner<6, 6>();
+  const double variance = kResidualsInCovariance / kResidualsBesidePrior * independentVariance(analysis_);
+  const Matrix12d information = measured_ + motionPriorTerm(prior_, now_, variance).information;
+  return variance * information.ldlt().solve(Matrix12d::Identity()).topLeftCorner<6, 6>();
 }
 
 }  // namespace pcl_floam

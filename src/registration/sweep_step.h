@@ -51,8 +51,10 @@ public:
   [[nodiscard]] Matrix6 poseCovariance() const;
 
 private:
-  double variance_;
-  Matrix12 information_;
+  const InformationAnalysis& analysis_;
+  const MotionPrior& prior_;
+  const SweepTrajectory& now_;
+  Matrix12 measured_;  ///< information of the correspondences
   Vector12 gradient_;
 };
 

@@ -319,9 +319,10 @@ TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)
   parameters_.kernel = RobustKernel::none;
   const NormalEquations equations = equationsAt(trajectory_);
   const InformationAnalysis analysis(equations, 1e-4);
-  const double variance = equations.weighted_squares / equations.weight;
-  const Eigen::Matrix<double, 6, 6> expected = variance * Eigen::Matrix<double, 6, 6>(equations.information).inverse();
+  const Eigen::Matrix<double, 6, 6> inverse = Eigen::Matrix<double, 6, 6>(equations.information).inverse();
+  const Eigen::Matrix<double, 6, 6> expected = analysis.poseVariance() * inverse;
   EXPECT_LT((analysis.covariance() - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_GT(analysis.poseVariance(), analysis.residualVariance() * analysis.meanWeight());
   EXPECT_TRUE(analysis.weakDirections().empty());
 }
 
