@@ -4,6 +4,7 @@
 #include "common/prefetch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 

@@ -152,7 +152,11 @@ private:
         break;
       }
       tried = candidate.twist;
-      candidate = tryMotion(sample_, tried, 0.0, rough);
+      const Candidate next = tryMotion(sample_, tried, 0.0, rough);
+      if (!next.report.hasConverged()) {
+        break;
+      }
+      candidate = next;
     }
     return candidate;
   }

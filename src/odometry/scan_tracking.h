@@ -60,6 +60,7 @@ struct OdometryPipeline::Impl {
   double periods_since_tracked = 0.0;
   double sweep_fraction = 1.0;                          ///< duration of the sweep in periods
   SweepMotion last_sweep{Vector6::Zero(), kReference};  ///< motion during the last sweep
+  std::optional<Vector6> tracked_twist;  ///< per period, of the last sweep that was tracked with its times
   bool started = false;
   int failed_starts = 0;
   int keyframes = 0;
@@ -175,8 +176,10 @@ struct OdometryPipeline::Impl {
     if (parameters.compensation == CompensationMode::continuous) {
       sweep.freedom = SweepFreedom::free;
       sweep.prior = velocity_noise.prior(guess, sweep.twist, periods_since_tracked, sweep_fraction);
-      sweep.last_twist = last_sweep.twist();
-      sweep.sweeps_since_last = std::max(1.0, periods_since_tracked) / sweep_fraction;
+      if (tracked_twist) {
+        sweep.last_twist = sweep_fraction * *tracked_twist;
+        sweep.sweeps_since_last = std::max(1.0, periods_since_tracked) / sweep_fraction;
+      }
     }
     return sweep;
   }
@@ -234,6 +237,7 @@ struct OdometryPipeline::Impl {
     if (twist) {
       velocity.set(*twist);
       placeFirstScan(*twist);
+      tracked_twist = compensatedFraction() > 0.0 ? twist : std::nullopt;
       world_T_last = world_T_tracked;
     }
     report.milliseconds.registration += watch.lap();
@@ -264,15 +268,18 @@ struct OdometryPipeline::Impl {
   void updateMap()
   {
     const SE3& optimized = report.registration.target_T_source;
+    const bool motion_was_known = velocity.isKnown();
     prediction_error.observe(world_T_predicted.inverse() * optimized, typicalRange(measured));
     if (periods_since_tracked > 0.0) {
       const Vector6 twist = optimizedTwist();
-      if (velocity.isKnown()) {
+      if (motion_was_known) {
         velocity_noise.observe(twist - velocity.twist(), periods_since_tracked);
       }
       velocity.set(twist);
     }
     last_sweep = optimizedSweep();
+    const bool estimated = motion_was_known && compensatedFraction() > 0.0;
+    tracked_twist = estimated ? std::optional<Vector6>(last_sweep.twist() / sweep_fraction) : std::nullopt;
     world_T_last = world_T_tracked = optimized;
     periods_since_tracked = 0.0;
     report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
@@ -290,6 +297,7 @@ struct OdometryPipeline::Impl {
   const OdometryReport& start()
   {
     started = true;
+    tracked_twist.reset();
     first = measured;
     placeFirstScan(Vector6::Zero());
     world_T_last = world_T_tracked;

@@ -156,6 +156,8 @@ private:
       trajectory_ = startOf(model_, trajectory_.pose());
     }
     if (model_.freedom == SweepFreedom::free) {
+      // The derivatives leave out that the acceleration follows the twist: a quarter of what the twist does at the
+      // ends.
       const Vector6& twist = trajectory_.twist();
       trajectory_ = {trajectory_.pose(), twist, model_.reference, model_.acceleration(twist)};
     }

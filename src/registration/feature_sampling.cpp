@@ -13,6 +13,9 @@ namespace {
 std::uint64_t cellNumber(float coordinate, float cell)
 {
   constexpr float kHalf = 1 << 20;
+  if (std::isnan(coordinate)) {
+    return 0;
+  }
   return static_cast<std::uint64_t>(std::clamp(std::floor(coordinate / cell), -kHalf, kHalf - 1.0F) + kHalf);
 }
 

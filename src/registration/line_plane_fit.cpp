@@ -146,6 +146,9 @@ std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationP
   }
   const Eigen::Vector3d normal = nullDirection(points.covariance - across * Eigen::Matrix3d::Identity());
   const InPlane in_plane(points, normal);
+  if (!(in_plane.determinant > 0.0)) {
+    return std::nullopt;  // a line, up to rounding
+  }
   return PlaneFit{points.center, normal, across * in_plane.extrapolation(points.center),
                   in_plane.tilt(across, neighbors.count)};
 }

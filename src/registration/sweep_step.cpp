@@ -68,7 +68,9 @@ double independentVariance(const InformationAnalysis& analysis)
 
 FreeSweepSolver::FreeSweepSolver(const NormalEquations& equations, const InformationAnalysis& analysis,
                                  const MotionPrior& prior, const SweepTrajectory& now)
-    : analysis_(analysis), prior_(prior), now_(now)
+    : covariance_variance_(kResidualsInCovariance / kResidualsBesidePrior * independentVariance(analysis)),
+      term_(motionPriorTerm(prior, now, independentVariance(analysis))),
+      covariance_term_(motionPriorTerm(prior, now, covariance_variance_))
 {
   const Matrix6 strong = analysis.strongProjection();
   const auto cleaned = [&](const Matrix6& m) { return Matrix6(strong.transpose() * m * strong); };
@@ -80,18 +82,16 @@ FreeSweepSolver::FreeSweepSolver(const NormalEquations& equations, const Informa
 SweepStep FreeSweepSolver::step() const
 {
   using Matrix12d = Eigen::Matrix<double, 12, 12>;  // Eigen 3.4's solvers do not take unaligned types
-  const MotionPriorTerm term = motionPriorTerm(prior_, now_, independentVariance(analysis_));
-  const Vector12 gradient = gradient_ + term.information * term.error;
-  const Vector12 solution = Matrix12d(measured_ + term.information).ldlt().solve(-gradient);
+  const Vector12 gradient = gradient_ + term_.information * term_.error;
+  const Vector12 solution = Matrix12d(measured_ + term_.information).ldlt().solve(-gradient);
   return {solution.head<6>(), solution.tail<6>()};
 }
 
 Matrix6 FreeSweepSolver::poseCovariance() const
 {
   using Matrix12d = Eigen::Matrix<double, 12, 12>;
-  const double variance = kResidualsInCovariance / kResidualsBesidePrior * independentVariance(analysis_);
-  const Matrix12d information = measured_ + motionPriorTerm(prior_, now_, variance).information;
-  return variance * information.ldlt().solve(Matrix12d::Identity()).topLeftCorner<6, 6>();
+  const Matrix12d information = measured_ + covariance_term_.information;
+  return covariance_variance_ * information.ldlt().solve(Matrix12d::Identity()).topLeftCorner<6, 6>();
 }
 
 }  // namespace pcl_floam

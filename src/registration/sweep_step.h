@@ -51,10 +51,10 @@ public:
   [[nodiscard]] Matrix6 poseCovariance() const;
 
 private:
-  const InformationAnalysis& analysis_;
-  const MotionPrior& prior_;
-  const SweepTrajectory& now_;
-  Matrix12 measured_;  ///< information of the correspondences
+  double covariance_variance_;
+  MotionPriorTerm term_;             ///< beside the residuals, for the step
+  MotionPriorTerm covariance_term_;  ///< and for the covariance
+  Matrix12 measured_;                ///< information of the correspondences
   Vector12 gradient_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -59,6 +60,8 @@ TEST(FeatureSampling, AnyCoordinateHasACell)
   features[1].x = -1e30F;
   features[2].x = std::numeric_limits<float>::max();  // together with the first
   EXPECT_EQ(atMostPerCell(features, 2.0F, 1).size(), 3U);
+  features[3].x = std::numeric_limits<float>::quiet_NaN();  // together with the second
+  EXPECT_EQ(atMostPerCell(features, 2.0F, 1).size(), 2U);
 }
 
 }  // namespace

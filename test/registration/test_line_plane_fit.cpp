@@ -3,6 +3,8 @@
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 #include <Eigen/Eigenvalues>
 
 namespace pcl_floam::test {
@@ -154,6 +156,24 @@ TEST(PlaneFit, RefusesALine)
   // Any plane through the line would do: the normal is noise.
   EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}}),
                         RegistrationParameters()));
+}
+
+TEST(PlaneFit, ALineGivesNoInfinitiesAlsoWhereAnySpreadWillDo)
+{
+  RegistrationParameters parameters;
+  parameters.plane_spread = 0.0;
+  std::mt19937 random(11);
+  for (int n = 0; n < 1000; ++n) {
+    const Eigen::Vector3d direction = randomTwist(random, 1.0, 0.0).head<3>();
+    std::vector<Eigen::Vector3d> points;
+    for (int i = 0; i < 5; ++i) {
+      points.push_back((i - 2.3) * direction);
+    }
+    const auto plane = fitPlane(neighborsAt(points), parameters);
+    if (plane) {  // by the coordinates' rounding
+      EXPECT_TRUE(std::isfinite(plane->variance) && plane->tilt[0].allFinite() && plane->tilt[1].allFinite());
+    }
+  }
 }
 
 TEST(PlaneFit, RefusesABall)

@@ -28,8 +28,8 @@ struct RegistrationRun {
   double guess_uncertainty = 0.0;
   int threads = 1;
   SweepModel sweep;  ///< default: the source is not distorted
-  /// Where there are more features than `max_features`, those of crowded places are thinned first, so that near things,
-  /// which may move, don't outweigh the rest.
+  /// Where there are more features than `max_features`, those of crowded places are thinned first if enough are left,
+  /// so that near things, which may move, don't outweigh the rest.
   bool spread_features = false;
   /// Called before each iteration with the present pose, if set.
   std::function<void(const SE3& target_T_source)> on_iteration;

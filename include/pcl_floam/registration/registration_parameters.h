@@ -52,9 +52,9 @@ struct RegistrationParameters {
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. An edge of the map lies where a scan happened to
   /// hit a corner, or on the near side of a pole: centimetres off and always behind, where planes are good to
-  /// millimetres. The paper counts each as 1 (Eq. 10); measured by 04_choices.sh, 1 against 0.06: KITTI raw 0001 3.2
-  /// against 4.2 cm, within its ground truth's noise; warehouse 1.6 against 1.0, handheld 0.6 against 0.5, urban 2.9
-  /// against 0.8, corridor 6.9 against 3.4.
+  /// millimetres. The paper counts each as 1 (Eq. 10); measured by 04_choices.sh, 1 against 0.06: KITTI raw 0001 3.6
+  /// against 4.9 cm, within its ground truth's noise; warehouse 1.6 against 1.0, handheld 0.5 against 0.3, urban 2.5
+  /// against 0.8, corridor 7.4 against 4.1.
   double edge_weight = 0.06;
   /// A plane counts half if its map points' standard deviation across it is this times the median of the scan's planes,
   /// and less if it is more; beside those points it is taken to grow. >= 0, 0: all count alike. Reasonable: 2 to 8.
@@ -63,8 +63,8 @@ struct RegistrationParameters {
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.05;
   /// Most planes that are registered, evenly taken from those of the scan, and a sixth as many edges; >= 100. With 1500
-  /// a registration takes a third longer; errors in the warehouse are 0.85 to 1.08 instead of 0.93 to 1.15 cm, those of
-  /// three cities 0.029 to 0.033 instead of 0.028 to 0.036 %.
+  /// a registration takes a third longer; errors in the warehouse are a twelfth less, those of cities and highways
+  /// alike.
   int max_features = 1000;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are

@@ -47,14 +47,14 @@ struct SweepModel {
 
   /// With `free`.
   MotionPrior prior;
-  Vector6 last_twist = Vector6::Zero();  ///< of the sweep before
+  Vector6 last_twist = Vector6::Zero();  ///< of the sweep before, as motion over one as long as this
   double sweeps_since_last = 0.0;        ///< time from that sweep to this one, in sweeps; 0: nothing is known of it
 
   /// Change of the velocity over the sweep that goes with a twist: as it has changed since the sweep before.
   ///
   /// The sensor sees ahead at one time of its sweep and aside at another, so that a change of pitch that is left out
-  /// looks like a rate of roll. With it the rate in the simulated city falls from 0.041 to 0.031 %, the error of
-  /// handheld sensors from 0.67 and 0.46 to 0.43 and 0.35 cm. Half as much again is worse on roads, where bodies sway
+  /// looks like a rate of roll. With it the rate in the simulated city falls from 0.041 to 0.030 %, the error of
+  /// handheld sensors from 0.67 and 0.46 to 0.44 and 0.35 cm. Half as much again is worse on roads, where bodies sway
   /// quicker.
   [[nodiscard]] Vector6 acceleration(const Vector6& twist_now) const
   {
