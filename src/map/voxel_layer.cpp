@@ -156,15 +156,14 @@ std::int32_t VoxelLayer::findOrAddBlock(const BlockKey& key)
 
 void VoxelLayer::insert(const Eigen::Vector3d& point)
 {
-  if (isRepresentable(point)) {
-    insertAt(blockQuery(point));
-  }
+  insertEach(&point, 1);
 }
 
 void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count)
 {
   constexpr std::size_t kTogether = 16;
   std::array<BlockQuery, kTogether> places;
+  std::array<std::int32_t, kTogether> blocks;
   for (std::size_t first = 0; first < count; first += kTogether) {
     std::size_t together = 0;
     for (std::size_t i = first; i < std::min(first + kTogether, count); ++i) {
@@ -175,24 +174,17 @@ void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count)
       }
     }
     for (std::size_t i = 0; i < together; ++i) {
-      const std::int32_t block = findBlock(places[i].key);
-      if (block != kNone) {
-        prefetch(&blocks_[static_cast<std::size_t>(block)], sizeof(VoxelBlock));
+      blocks[i] = findBlock(places[i].key);
+      if (blocks[i] != kNone) {
+        prefetch(&blocks_[static_cast<std::size_t>(blocks[i])], sizeof(VoxelBlock));
       }
     }
     for (std::size_t i = 0; i < together; ++i) {
-      insertAt(places[i]);
+      // One that was not there may have been added for a point just before.
+      const std::int32_t block = blocks[i] != kNone ? blocks[i] : findOrAddBlock(places[i].key);
+      size_ += blocks_[static_cast<std::size_t>(block)].add(voxelAt(places[i].offset), places[i].offset) ? 1 : 0;
     }
   }
-}
-
-void VoxelLayer::insertAt(const BlockQuery& place)
-{
-  if (last_block_ == kNone || !(blocks_[static_cast<std::size_t>(last_block_)].key == place.key)) {
-    last_block_ = findOrAddBlock(place.key);
-  }
-  VoxelBlock& block = blocks_[static_cast<std::size_t>(last_block_)];
-  size_ += block.add(voxelAt(place.offset), place.offset) ? 1 : 0;
 }
 
 void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
@@ -214,7 +206,6 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
     return;
   }
   blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), isFar), blocks_.end());
-  last_block_ = kNone;
   rebuildTable(table_.size());
   size_ = 0;
   for (VoxelBlock& block : blocks_) {
@@ -228,7 +219,6 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
 void VoxelLayer::clear()
 {
   blocks_.clear();
-  last_block_ = kNone;
   size_ = 0;
   rebuildTable(1024);
 }

@@ -57,7 +57,6 @@ private:
   [[nodiscard]] BlockKey keyOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
-  void insertAt(const BlockQuery& place);
 
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
   void prefetchEntry(const BlockKey& key) const;
@@ -86,8 +85,7 @@ private:
     std::uint32_t tag = 0;  ///< further bits of the key's hash
     std::int32_t block = VoxelBlock::kNone;
   };
-  std::vector<Entry> table_;                     ///< open addressing, a power of two
-  std::int32_t last_block_ = VoxelBlock::kNone;  ///< inserted into; the next point is likely to lie there, too
+  std::vector<Entry> table_;  ///< open addressing, a power of two
   std::size_t size_ = 0;
 };
 
