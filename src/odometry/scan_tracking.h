@@ -27,8 +27,9 @@ namespace pcl_floam {
 inline constexpr double kReference = 0.5;
 
 /// A map of fewer keyframes may hold more of the traffic than of the world. Started in the middle of a column of cars
-/// at 25 m/s, a simulated drive of 1 km came to 0.71 %, and to 0.10 with features that are spread until then. All the
-/// way they make cities and clear highways a fifth worse.
+/// at 25 m/s, a simulated drive of 1 km (highway, seed 22) came to 0.71 %, and to 0.105 with features that are spread
+/// until then. All the way they cost cities a tenth (0.033 instead of 0.030 %) and clear highways a third (0.077
+/// instead of 0.059 %).
 inline constexpr int kYoungMap = 60;
 
 /// Root mean square distance of the features: what a rotation error is multiplied with.
