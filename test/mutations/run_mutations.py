@@ -57,7 +57,7 @@ def build(tests):
 
 
 def configure(faults):
-    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPCL_FLOAM_BUILD_EXAMPLES=OFF", "-DPCL_FLOAM_INSTALL=OFF",
+    options = ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DPCL_FLOAM_INSTALL=OFF",
                "-DPCL_FLOAM_WARNINGS_AS_ERRORS=ON"]
     subprocess.run(["cmake", "-S", TREE, "-B", BUILD, *options], check=True, stdout=subprocess.DEVNULL)
     result = build(sorted({test for fault in faults for test in fault.tests}))
