@@ -5,6 +5,7 @@
 #include "odometry/constant_velocity.h"
 #include "odometry/first_motion.h"
 #include "odometry/stopwatch.h"
+#include "odometry/sweep_turn.h"
 #include "odometry/vertical_correction.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
@@ -31,6 +32,11 @@ inline constexpr double kReference = 0.5;
 /// until then. All the way they cost cities a tenth (0.033 instead of 0.030 %) and clear highways a third (0.077
 /// instead of 0.059 %).
 inline constexpr int kYoungMap = 60;
+
+/// So many scans are taken into a new map however little the sensor has moved: one scan's noise makes planes that are
+/// off, and seem to tell of directions that they do not. In smooth tunnels the greatest error across, three seeds and
+/// an HDL-32, was 3.4, 2.3, 4.2 and 0.9 cm without, and is 2.6, 1.1, 1.7 and 0.8 with them.
+inline constexpr int kFirstKeyframes = 10;
 
 /// Root mean square distance of the features: what a rotation error is multiplied with.
 inline double typicalRange(const FeatureSet& features)
@@ -61,6 +67,7 @@ struct OdometryPipeline::Impl {
   double periods_since_tracked = 0.0;
   double sweep_fraction = 1.0;                          ///< duration of the sweep in periods
   SweepMotion last_sweep{Vector6::Zero(), kReference};  ///< motion during the last sweep
+  SweepTurn turn;
   std::optional<Vector6> tracked_twist;  ///< per period, of the last sweep that was tracked with its times
   bool started = false;
   int failed_starts = 0;
@@ -220,8 +227,8 @@ struct OdometryPipeline::Impl {
     return between;
   }
 
-  /// Motion during the sweep after the registration.
-  [[nodiscard]] SweepMotion optimizedSweep() const
+  /// Motion during the sweep as it was registered.
+  [[nodiscard]] SweepMotion registeredSweep() const
   {
     if (parameters.compensation == CompensationMode::continuous) {
       return SweepMotion(report.registration.sweep_twist, kReference, report.registration.sweep_acceleration);
@@ -271,21 +278,23 @@ struct OdometryPipeline::Impl {
     const SE3& optimized = report.registration.target_T_source;
     const bool motion_was_known = velocity.isKnown();
     prediction_error.observe(world_T_predicted.inverse() * optimized, typicalRange(measured));
+    const SweepMotion sweep = registeredSweep();
+    last_sweep = sweep;
     if (periods_since_tracked > 0.0) {
-      const Vector6 twist = optimizedTwist();
-      if (motion_was_known) {
-        velocity_noise.observe(twist - velocity.twist(), periods_since_tracked);
+      if (motion_was_known && parameters.compensation == CompensationMode::continuous && compensatedFraction() > 0.0) {
+        last_sweep = turn.refine(sweep, sweep_fraction, twistTo(optimized), periods_since_tracked);
       }
-      velocity.set(twist);
+      updateVelocity();
     }
-    last_sweep = optimizedSweep();
     const bool estimated = motion_was_known && compensatedFraction() > 0.0;
     tracked_twist = estimated ? std::optional<Vector6>(last_sweep.twist() / sweep_fraction) : std::nullopt;
     world_T_last = world_T_tracked = optimized;
     periods_since_tracked = 0.0;
-    report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, optimized);
+    report.keyframe = isKeyframe(optimized);
     if (report.keyframe) {
-      compensate(measured, last_sweep, undistorted);
+      // The map takes the sweep as it was registered: with the turn from several, the real drive of the tests came to
+      // 6.1 instead of 4.9 cm.
+      compensate(measured, sweep, undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, optimized);
       world_T_keyframe = optimized;
@@ -294,11 +303,36 @@ struct OdometryPipeline::Impl {
     report.milliseconds.map += watch.lap();
   }
 
+  void updateVelocity()
+  {
+    const Vector6 twist = optimizedTwist();
+    if (!velocity.isKnown()) {
+      velocity.set(twist);
+      return;
+    }
+    Matrix6 sensor_R_world = Matrix6::Zero();
+    sensor_R_world.topLeftCorner<3, 3>() = sensor_R_world.bottomRightCorner<3, 3>() =
+        report.registration.target_T_source.rotation.transpose();
+    const Matrix6 covariance = sensor_R_world * report.registration.covariance * sensor_R_world.transpose();
+    const Vector6 change = velocity.observe(twist, covariance, velocity_noise.variance(), periods_since_tracked);
+    velocity_noise.observe(change, periods_since_tracked);
+  }
+
+  [[nodiscard]] bool isKeyframe(const SE3& world_T_sensor) const
+  {
+    if (prior_map == MapUse::frozen) {
+      return false;
+    }
+    return (!prior_map && keyframes < kFirstKeyframes) ||
+           parameters.keyframe.isKeyframe(world_T_keyframe, world_T_sensor);
+  }
+
   /// The first usable scan.
   const OdometryReport& start()
   {
     started = true;
     tracked_twist.reset();
+    turn = SweepTurn();
     first = measured;
     placeFirstScan(Vector6::Zero());
     world_T_last = world_T_tracked;
