@@ -92,7 +92,8 @@ void OdometryPipeline::localizeIn(KeyframeVoxelMap map, const SE3& world_T_senso
   impl_->map = std::move(map);
   impl_->prior_map = use;
   impl_->started = true;
-  impl_->world_T_last = impl_->world_T_tracked = impl_->world_T_keyframe = world_T_sensor;
+  impl_->motion.begin(world_T_sensor);
+  impl_->world_T_keyframe = world_T_sensor;
 }
 
 void OdometryPipeline::reset(const SE3& world_T_sensor)

@@ -20,8 +20,8 @@ SweepMotion SweepTurn::refine(const SweepMotion& registered, double sweep_fracti
     const Eigen::Vector3d during = now_R_last * last_->during;
     const Eigen::Vector3d before = now_R_last * last_->between;
     twist.tail<3>() = sweep_fraction * (0.7 * now.during - 0.6 * during + 0.75 * now.between + 0.15 * before);
-    acceleration.tail<3>() = sweep_fraction * sweep_fraction *
-                             (1.6 * now.during - 1.2 * during - 0.8 * now.between + 0.4 * before);
+    acceleration.tail<3>() =
+        sweep_fraction * sweep_fraction * (1.6 * now.during - 1.2 * during - 0.8 * now.between + 0.4 * before);
   }
   last_ = now;
   return SweepMotion(twist, registered.reference(), acceleration);

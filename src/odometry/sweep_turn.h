@@ -14,9 +14,9 @@ namespace pcl_floam {
 /// A sweep's rotation is registered with an error of 10 to 80 millidegrees; that between two poses is five times as
 /// precise, but tells of the past. The weights are exact for a constant angular acceleration; what that leaves open is
 /// least squares over six simulated worlds (VLP-16, HDL-64; by hand, in rooms, on roads), of which any five give the
-/// same. The end of a sweep is then turned by 10 to 60 % less error about most axes, and simulated cities come to 0.029,
-/// 0.032 and 0.029 instead of 0.032, 0.036 and 0.029 % (seeds 21 to 23); to 0.028, 0.030 and 0.025 as the accelerations
-/// of the next sweep are taken from it, too.
+/// same. The end of a sweep is then turned by 10 to 60 % less error about most axes, and simulated cities come to
+/// 0.029, 0.032 and 0.029 instead of 0.032, 0.036 and 0.029 % (seeds 21 to 23); to 0.028, 0.030 and 0.025 as the
+/// accelerations of the next sweep are taken from it, too.
 class SweepTurn {
 public:
   /// \param registered     motion over the sweep, at its middle

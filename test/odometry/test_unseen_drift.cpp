@@ -1,0 +1,56 @@
+// What a pose may be off along directions that are not seen.
+#include "odometry/unseen_drift.h"
+
+#include <gtest/gtest.h>
+
+namespace pcl_floam {
+namespace {
+
+WeakDirection along(const Vector6& direction)
+{
+  WeakDirection weak;
+  weak.direction = direction.normalized();
+  return weak;
+}
+
+TEST(UnseenDrift, GrowsWithTheTimeAndTheErrorOfTheVelocity)
+{
+  Matrix6 velocity = Matrix6::Zero();
+  velocity.diagonal() << 0.04, 0.01, 0.01, 1e-4, 1e-4, 1e-4;
+  UnseenDrift drift;
+  for (int i = 0; i < 10; ++i) {
+    drift.carryOn(velocity, 1.0);
+    drift.see({along(Vector6::UnitX())});
+  }
+  // A velocity that is off by 0.2 m per period all the time: 2 m after ten.
+  EXPECT_NEAR(drift.covariance()(0, 0), 4.0, 1e-9);
+  EXPECT_TRUE(drift.covariance().bottomRightCorner(5, 5).isZero(1e-12));
+  UnseenDrift at_once;
+  at_once.carryOn(velocity, 10.0);
+  EXPECT_TRUE(at_once.covariance().isApprox(100.0 * velocity));  // nothing was seen
+}
+
+TEST(UnseenDrift, EndsWhenTheDirectionIsSeen)
+{
+  UnseenDrift drift;
+  const Matrix6 velocity = 0.01 * Matrix6::Identity();
+  drift.carryOn(velocity, 5.0);
+  drift.see({});
+  EXPECT_TRUE(drift.covariance().isZero(0.0));
+  drift.carryOn(velocity, 1.0);
+  EXPECT_TRUE(drift.covariance().isApprox(velocity));  // nothing is left of before
+}
+
+TEST(UnseenDrift, IsAlongTheDirectionWhateverItIs)
+{
+  Vector6 direction = Vector6::Zero();
+  direction.head<3>() = Eigen::Vector3d(1.0, 2.0, -0.5).normalized();
+  UnseenDrift drift;
+  drift.carryOn(0.01 * Matrix6::Identity(), 3.0);
+  drift.see({along(direction)});
+  EXPECT_NEAR(direction.dot(drift.covariance() * direction), 0.09, 1e-9);
+  EXPECT_NEAR(drift.covariance().trace(), 0.09, 1e-9);
+}
+
+}  // namespace
+}  // namespace pcl_floam
