@@ -144,6 +144,12 @@ void MotionModel::updateVelocity(const Vector6& measured, const RegistrationRepo
     velocity_.set(measured);
     return;
   }
+  if (mode_ != CompensationMode::continuous) {
+    // The paper's way: there the sweep is compensated with this velocity, and must not lag behind.
+    velocity_noise_.observe(measured - velocity_.twist(), periods_since_tracked_);
+    velocity_.set(measured);
+    return;
+  }
   const Matrix6 covariance = turned(registration.target_T_source.rotation.transpose(), registration.covariance);
   const Vector6 change = velocity_.observe(measured, covariance, velocity_noise_.variance(), periods_since_tracked_);
   velocity_noise_.observe(change, periods_since_tracked_);

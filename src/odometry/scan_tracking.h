@@ -26,11 +26,6 @@ namespace pcl_floam {
 /// instead of 0.059 %).
 inline constexpr int kYoungMap = 60;
 
-/// So many scans are taken into a new map however little the sensor has moved: one scan's noise makes planes that are
-/// off, and seem to tell of directions that they do not. In smooth tunnels the greatest error across, three seeds and
-/// an HDL-32, was 3.4, 2.3, 4.2 and 0.9 cm without, and is 2.6, 1.1, 1.7 and 0.8 with them.
-inline constexpr int kFirstKeyframes = 10;
-
 /// Root mean square distance of the features: what a rotation error is multiplied with.
 inline double typicalRange(const FeatureSet& features)
 {
@@ -185,7 +180,7 @@ struct OdometryPipeline::Impl {
   void updateMap()
   {
     motion.update(report.registration, world_T_predicted, typicalRange(measured));
-    report.keyframe = isKeyframe(motion.pose());
+    report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, motion.pose());
     if (report.keyframe) {
       // The map takes the sweep as it was registered: with its turn refined from several sweeps, the real drive of the
       // tests came to 6.1 instead of 4.9 cm.
@@ -196,15 +191,6 @@ struct OdometryPipeline::Impl {
       ++keyframes;
     }
     report.milliseconds.map += watch.lap();
-  }
-
-  [[nodiscard]] bool isKeyframe(const SE3& world_T_sensor) const
-  {
-    if (prior_map == MapUse::frozen) {
-      return false;
-    }
-    return (!prior_map && keyframes < kFirstKeyframes) ||
-           parameters.keyframe.isKeyframe(world_T_keyframe, world_T_sensor);
   }
 
   /// The first usable scan.

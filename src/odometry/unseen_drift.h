@@ -16,7 +16,8 @@ public:
   /// \param periods  since the last scan
   void carryOn(const Matrix6& velocity, double periods);
 
-  /// Keeps what the scan said nothing of.
+  /// Keeps what the scan said nothing of. A direction is seen again once that holds for a second: a single scan may
+  /// seem to tell of it.
   void see(const std::vector<WeakDirection>& weak);
 
   /// In the parametrisation of \ref RegistrationReport::covariance.
@@ -25,6 +26,8 @@ public:
 private:
   Matrix6 pose_ = Matrix6::Zero();
   Matrix6 pose_and_velocity_ = Matrix6::Zero();  ///< what their errors have in common
+  Matrix6 unseen_ = Matrix6::Zero();             ///< projection onto the weak directions
+  int scans_that_see_ = 0;                       ///< one after the other
 };
 
 }  // namespace pcl_floam

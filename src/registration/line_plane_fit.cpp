@@ -97,14 +97,14 @@ struct InPlane {
   }
 
   /// Points that scatter by sigma across a plane, and along it with the covariance C, leave its normal off by
-  /// sigma^2 C^-1 / k: here as the two columns of a root of that (Cholesky).
+  /// sigma^2 C^-1 / k: here as the two columns of a root of that (Cholesky). The scatter about a plane fitted to the same
+  /// k points is less than that about the true one by (k - 3) / k.
   ///
-  /// The scatter about a plane fitted to the same k points is less than that about the true one by (k - 3) / k; points
-  /// of the map, being means of voxels, are off together. Against smooth corridors, half as much variance again fits.
+  /// With it the way along smooth tunnels is found weak in 859 to 878 of 892 scans, that along corridors with doors in 1
+  /// to 14 of as many.
   [[nodiscard]] std::array<Eigen::Vector3d, 2> tilt(double across, int count) const
   {
-    constexpr double kVarianceFactor = 1.5;
-    const double sigma = std::sqrt(kVarianceFactor * across / count);
+    const double sigma = std::sqrt(across / (count - 3));
     const double root = std::sqrt(vv / determinant);
     return {Eigen::Vector3d(sigma * (root * u - (uv / (root * determinant)) * v)),
             Eigen::Vector3d((sigma / std::sqrt(vv)) * v)};

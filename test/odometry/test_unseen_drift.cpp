@@ -30,15 +30,30 @@ TEST(UnseenDrift, GrowsWithTheTimeAndTheErrorOfTheVelocity)
   EXPECT_TRUE(at_once.covariance().isApprox(100.0 * velocity));  // nothing was seen
 }
 
-TEST(UnseenDrift, EndsWhenTheDirectionIsSeen)
+TEST(UnseenDrift, EndsWhenTheDirectionIsSeenForASecond)
 {
-  UnseenDrift drift;
   const Matrix6 velocity = 0.01 * Matrix6::Identity();
+  UnseenDrift drift;
   drift.carryOn(velocity, 5.0);
+  drift.see({along(Vector6::UnitX())});
+  for (int i = 0; i < 9; ++i) {
+    drift.carryOn(velocity, 1.0);
+    drift.see({});
+  }
+  EXPECT_NEAR(drift.covariance()(0, 0), 14.0 * 14.0 * 0.01, 1e-9);  // it may have been chance
+  drift.carryOn(velocity, 1.0);
   drift.see({});
   EXPECT_TRUE(drift.covariance().isZero(0.0));
   drift.carryOn(velocity, 1.0);
   EXPECT_TRUE(drift.covariance().isApprox(velocity));  // nothing is left of before
+}
+
+TEST(UnseenDrift, ASensorThatSawNothingAndSeesAgainIsWhereItIs)
+{
+  UnseenDrift drift;
+  drift.carryOn(0.01 * Matrix6::Identity(), 10.0);
+  drift.see({});
+  EXPECT_TRUE(drift.covariance().isZero(0.0));
 }
 
 TEST(UnseenDrift, IsAlongTheDirectionWhateverItIs)

@@ -92,7 +92,7 @@ TEST(PlaneFit, IsThatOfTheEigenvectors)
     for (int axis = 1; axis < 3; ++axis) {
       const Eigen::Vector3d direction = solver.eigenvectors().col(axis);
       extrapolation += std::pow(direction.dot(mean), 2) / values[axis];
-      tilt += 1.5 * values[0] / (neighbors.count * values[axis]) * direction * direction.transpose();
+      tilt += values[0] / ((neighbors.count - 3) * values[axis]) * direction * direction.transpose();
     }
     EXPECT_NEAR(plane->variance, values[0] * extrapolation, 1e-6 * values[0] * extrapolation + 1e-12);
     const Eigen::Matrix3d told =
