@@ -33,6 +33,7 @@ public:
     result_.scans.push_back(scan);
     result_.poses.push_back(report.world_T_sensor);
     ++result_.states[static_cast<std::size_t>(report.state)];
+    result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
     if (readable_) {
       result_.times.push_back(report.milliseconds);
       result_.last_read = report;

@@ -25,10 +25,11 @@ struct UnreadableScan {
 
 /// What came of a run, finished or cut short.
 struct RunResult {
-  std::vector<std::size_t> scans;       ///< their numbers in the folder
-  std::vector<SE3> poses;               ///< one each
-  std::vector<StageTimes> times;        ///< of those that were read
-  std::array<std::size_t, 4> states{};  ///< number of scans by TrackingState
+  std::vector<std::size_t> scans;        ///< their numbers in the folder
+  std::vector<SE3> poses;                ///< one each
+  std::vector<StageTimes> times;         ///< of those that were read
+  std::array<std::size_t, 4> states{};   ///< number of scans by TrackingState
+  std::size_t with_weak_directions = 0;  ///< scans that left a direction to the prediction
   std::vector<UnreadableScan> unreadable;
   OdometryReport last_read;    ///< of the last scan that was read
   std::string output_problem;  ///< why an output could not be written; the run ends with it

@@ -8,6 +8,8 @@
 
 #include <sys/resource.h>
 
+#include <cmath>
+
 namespace pcl_floam::tools {
 
 namespace {
@@ -32,6 +34,7 @@ Json scansJson(const RunSummary& summary)
           {"tracked", result.count(TrackingState::tracked)},
           {"predicted", result.count(TrackingState::predicted)},
           {"not_started", result.count(TrackingState::not_started)},
+          {"with_weak_directions", result.with_weak_directions},
           {"unreadable", unreadable}};
 }
 
@@ -46,6 +49,11 @@ Json timesJson(const std::vector<StageTimes>& times)
   return json;
 }
 
+Json sigma(const Matrix6& covariance)
+{
+  return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
+}
+
 Json structureJson(const OdometryReport& last)
 {
   return {{"scan_lines", last.scan_lines},
@@ -54,6 +62,7 @@ Json structureJson(const OdometryReport& last)
           {"timing_source", toString(last.timing_source)},
           {"points", last.points},
           {"edges", last.edges},
+          {"position_sigma_m", sigma(last.covariance)},
           {"planes", last.planes}};
 }
 
@@ -93,6 +102,10 @@ std::string describe(const RunSummary& summary)
                 result.count(TrackingState::predicted), result.unreadable.size());
   text += formatted("\n%-22s %zu by %s, times by %s", "scan lines", last.scan_lines, toString(last.scan_line_source),
                     toString(last.timing_source));
+  if (result.with_weak_directions > 0) {
+    text += formatted("\n%-22s in %zu scans: hardly constrained, there the prediction was kept", "weak directions",
+                      result.with_weak_directions);
+  }
   text += formatted("\n%-22s median %.1f ms, 95 %% below %.1f ms", "time per scan", total.median, total.p95);
   text += formatted("\n%-22s %.1f m", "path", pathLength(result.poses));
   if (summary.accuracy) {
