@@ -264,14 +264,16 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
                      const std::vector<std::uint8_t>& selectable, int threads)
 {
   // Each part takes lines that follow each other, so that the parts' features, one after the other, are in the order
-  // of the lines for every number of parts.
-  const std::size_t parts = std::min(static_cast<std::size_t>(std::max(threads, 1)), lines.lines());
+  // of the lines for every number of parts. Lines that look at the sky are done sooner: more parts than threads.
+  constexpr std::size_t kPartsPerThread = 4;
+  const std::size_t wanted = threads > 1 ? kPartsPerThread * static_cast<std::size_t>(threads) : 1;
+  const std::size_t parts = std::min(wanted, lines.lines());
   std::vector<FeatureSet> found(parts);
   features.clear();
   if (parts > 0) {
     std::swap(found.front(), features);  // its memory is used again
   }
-#pragma omp parallel for num_threads(std::max(threads, 1)) schedule(static, 1)
+#pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 1)
   for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
     const auto part = static_cast<std::size_t>(p);
     LineScratch scratch;

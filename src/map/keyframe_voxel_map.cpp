@@ -33,14 +33,15 @@ struct KeyframeVoxelMap::Impl {
     }
   }
 
-  void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor)
+  static void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor,
+                     int threads)
   {
     std::vector<Eigen::Vector3d> points;
     points.reserve(features.size());
     for (const Feature& feature : features) {
       points.push_back(world_T_sensor * Eigen::Vector3d(feature.x, feature.y, feature.z));
     }
-    layer_of_kind.insertEach(points.data(), points.size());
+    layer_of_kind.insertEach(points.data(), points.size(), threads);
   }
 
   /// Cropping touches every block, so it is done once the sensor has gone a tenth of the horizon.
@@ -79,10 +80,10 @@ KeyframeVoxelMap& KeyframeVoxelMap::operator=(const KeyframeVoxelMap& other)
   return *this;
 }
 
-void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sensor)
+void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sensor, int threads)
 {
-  impl_->insert(impl_->edges, features.edges, world_T_sensor);
-  impl_->insert(impl_->planes, features.planes, world_T_sensor);
+  Impl::insert(impl_->edges, features.edges, world_T_sensor, threads);
+  Impl::insert(impl_->planes, features.planes, world_T_sensor, threads);
   impl_->cropWhenDue(world_T_sensor.translation);
   impl_->rebuildTrees();
 }

@@ -159,7 +159,49 @@ void VoxelLayer::insert(const Eigen::Vector3d& point)
   insertEach(&point, 1);
 }
 
-void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count)
+void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count, int threads)
+{
+  if (threads > 1) {
+    insertShared(points, count, threads);
+  } else {
+    insertInTurn(points, count);
+  }
+}
+
+void VoxelLayer::insertShared(const Eigen::Vector3d* points, std::size_t count, int threads)
+{
+  constexpr std::int32_t kNowhere = kNone - 1;
+  constexpr std::size_t kAhead = 8;
+  std::vector<BlockQuery> places(count);
+  std::vector<std::int32_t> blocks(count);
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(count); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const bool representable = isRepresentable(points[i]);
+    places[i] = representable ? blockQuery(points[i]) : BlockQuery{};
+    blocks[i] = representable ? findBlock(places[i].key) : kNowhere;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    blocks[i] = blocks[i] == kNone ? findOrAddBlock(places[i].key) : blocks[i];
+  }
+  // Each block belongs to one thread, which takes the block's points in their order.
+  std::size_t added = 0;
+#pragma omp parallel for num_threads(threads) schedule(static, 1) reduction(+ : added)
+  for (int thread = 0; thread < threads; ++thread) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i + kAhead < count && blocks[i + kAhead] >= 0 && blocks[i + kAhead] % threads == thread) {
+        prefetch(&blocks_[static_cast<std::size_t>(blocks[i + kAhead])], sizeof(VoxelBlock));
+      }
+      if (blocks[i] >= 0 && blocks[i] % threads == thread) {
+        VoxelBlock& block = blocks_[static_cast<std::size_t>(blocks[i])];
+        added += block.add(voxelAt(places[i].offset), places[i].offset) ? 1 : 0;
+      }
+    }
+  }
+  size_ += added;
+}
+
+void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, std::size_t count)
 {
   constexpr std::size_t kTogether = 16;
   std::array<BlockQuery, kTogether> places;

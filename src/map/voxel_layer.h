@@ -27,7 +27,8 @@ public:
   void insert(const Eigen::Vector3d& point);
 
   /// \ref insert for \p count points, in their order; fetches for the later ones while it works on the first.
-  void insertEach(const Eigen::Vector3d* points, std::size_t count);
+  /// \param threads >= 1; the layer does not depend on it
+  void insertEach(const Eigen::Vector3d* points, std::size_t count, int threads = 1);
 
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
@@ -61,6 +62,8 @@ private:
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
   void prefetchEntry(const BlockKey& key) const;
   std::int32_t findOrAddBlock(const BlockKey& key);
+  void insertInTurn(const Eigen::Vector3d* points, std::size_t count);
+  void insertShared(const Eigen::Vector3d* points, std::size_t count, int threads);
   void enterInTable(std::int32_t block);
   void rebuildTable(std::size_t capacity);
   /// Makes a block and those around it known to each other.

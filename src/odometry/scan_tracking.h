@@ -186,7 +186,7 @@ struct OdometryPipeline::Impl {
       // tests came to 6.1 instead of 4.9 cm.
       compensate(measured, motion.sweep(), undistorted);
       report.milliseconds.compensation += watch.lap();
-      map.insert(undistorted, motion.pose());
+      map.insert(undistorted, motion.pose(), parameters.threads);
       world_T_keyframe = motion.pose();
       ++keyframes;
     }

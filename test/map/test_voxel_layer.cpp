@@ -132,6 +132,12 @@ TEST(VoxelLayer, ManyPointsAtOnceAsOneByOne)
   at_once.insertEach(points.data(), points.size());
   EXPECT_EQ(at_once.points(), one_by_one.points());
   EXPECT_EQ(at_once.size(), one_by_one.size());
+  for (const int threads : {2, 3, 7}) {
+    VoxelLayer shared(0.2);
+    shared.insertEach(points.data(), points.size(), threads);
+    EXPECT_EQ(shared.points(), one_by_one.points()) << threads;
+    EXPECT_EQ(shared.size(), one_by_one.size()) << threads;
+  }
 }
 
 TEST(KdTreeSearch, AgreesWithTheVoxels)

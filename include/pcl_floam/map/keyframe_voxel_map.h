@@ -60,7 +60,8 @@ public:
   /// Adds the features of one keyframe and forgets what lies beyond the horizon around it.
   /// \param features      in the sensor's frame, undistorted; their `time` is not used
   /// \param world_T_sensor finite
-  void insert(const FeatureSet& features, const SE3& world_T_sensor);
+  /// \param threads       >= 1; the map does not depend on it
+  void insert(const FeatureSet& features, const SE3& world_T_sensor, int threads = 1);
 
   /// Adds points to a layer, as they are in a saved map. World frame, m; points that are not finite are left out.
   void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
