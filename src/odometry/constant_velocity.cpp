@@ -18,7 +18,7 @@ constexpr double kNoTime = 0.01;            // periods; a velocity over less wou
 constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface is as likely as not another one
 
 /// A pose's covariance is that of an average scene. Where little tells of a direction its errors are larger and go on
-/// from scan to scan.
+/// from scan to scan. With 1 a drive along a corridor with 30 % of its returns missing came to 18 instead of 10 cm.
 constexpr double kPoseErrorsPerVariance = 4.0;
 
 }  // namespace
@@ -82,7 +82,7 @@ Vector6 ConstantVelocity::observe(const Vector6& measured, const Matrix6& pose_c
   const Matrix6d measurement = 2.0 * kPoseErrorsPerVariance / (periods * periods) * pose_covariance;
   const Matrix6d predicted = covariance_ + Matrix6((periods * noise).asDiagonal());
   const Matrix6d gain = Matrix6d(predicted + measurement).ldlt().solve(predicted).transpose();
-  const Vector6 change = gain * (measured - twist_);
+  Vector6 change = gain * (measured - twist_);
   const Matrix6d left = predicted - gain * predicted;
   covariance_ = 0.5 * (left + left.transpose());
   twist_ += change;
@@ -125,7 +125,7 @@ Vector6 VelocityNoise::variance() const
 MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twist, double periods,
                                  double sweep_fraction) const
 {
-  constexpr double kLeastSpread = 0.15;  // m
+  constexpr double kLeastSpread = 0.15;  // m; with 0.07 the real drive of the tests came to 6.5 instead of 4.9 cm
   constexpr double kMostSpread = 0.3;    // m
   constexpr double kPoseRotation = 0.1;  // rad
   const auto spread = [&](double pose, double noise) {

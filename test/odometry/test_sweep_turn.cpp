@@ -100,9 +100,9 @@ TEST(SweepTurn, StartsAnewAfterAGap)
   SweepTurn turn;
   turn.refine(truth.sweep(0), 1.0, truth.between(0), 1.0);
   EXPECT_EQ(turn.refine(truth.sweep(3), 1.0, truth.between(3), 3.0).twist(), truth.sweep(3).twist());
-  EXPECT_EQ(turn.refine(truth.sweep(4), 1.0, truth.between(4), 1.0).twist(), truth.sweep(4).twist());
-  EXPECT_NEAR(turn.refine(truth.sweep(5, 1e-3), 1.0, truth.between(5), 1.0).twist()[5], truth.rateAt(5) + 0.7e-3,
-              1e-12);
+  const SweepMotion next = truth.sweep(4, 1e-3);
+  EXPECT_EQ(turn.refine(next, 1.0, truth.between(4), 1.0).twist(), next.twist());
+  EXPECT_NEAR(turn.refine(truth.sweep(5), 1.0, truth.between(5), 1.0).twist()[5], truth.rateAt(5) - 0.6e-3, 1e-12);
 }
 
 }  // namespace
