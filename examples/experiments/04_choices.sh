@@ -36,6 +36,7 @@ choices = [
     ("no edges", ["--edges-per-sector", "0"]),
     ("an edge counts as a plane", ["--edge-weight", "1"]),
     ("planes all alike", ["--plane-scatter", "0"]),
+    ("planes of any width", ["--plane-width", "0"]),
     ("plane ratio 3", ["--plane-ratio", "3"]),
     ("edges from noise, too", ["--edge-noise-ratio", "0"]),
     ("every scan a keyframe", ["--keyframe-translation", "0", "--keyframe-rotation", "0"]),

@@ -62,8 +62,8 @@ Json structureJson(const OdometryReport& last)
           {"timing_source", toString(last.timing_source)},
           {"points", last.points},
           {"edges", last.edges},
-          {"position_sigma_m", sigma(last.covariance)},
-          {"planes", last.planes}};
+          {"planes", last.planes},
+          {"position_sigma_m", sigma(last.covariance)}};
 }
 
 }  // namespace

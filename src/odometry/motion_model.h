@@ -64,6 +64,9 @@ public:
   /// \param typical_range m, of the scan's points
   void update(const RegistrationReport& registration, const SE3& predicted, double typical_range);
 
+  /// The map takes in the scan at the present pose.
+  void enterMap() { drift_.enterMap(); }
+
   /// Without a registration, the sensor goes on as before.
   void carryOn();
 

@@ -187,6 +187,9 @@ struct OdometryPipeline::Impl {
       compensate(measured, motion.sweep(), undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, motion.pose(), parameters.threads);
+      if (!prior_map) {
+        motion.enterMap();
+      }
       world_T_keyframe = motion.pose();
       ++keyframes;
     }

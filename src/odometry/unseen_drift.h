@@ -9,22 +9,27 @@
 namespace pcl_floam {
 
 /// Covariance of the pose along weak directions, where it is only carried on with the last known velocity. It grows
-/// with the time since they were seen, and ends when they are seen again.
+/// with the time since they were seen. What of it is in the map by then stays for good: a direction that is seen again
+/// is seen in the map that drifted along.
 class UnseenDrift {
 public:
   /// \param velocity covariance of the motion per period, in the world's axes
   /// \param periods  since the last scan
   void carryOn(const Matrix6& velocity, double periods);
 
-  /// Keeps what the scan said nothing of. A direction is seen again once that holds for a second: a single scan may
-  /// seem to tell of it.
+  /// Keeps what the scan said nothing of. Directions are seen again once ten scans in a row name none as weak: a single
+  /// one may seem to tell of them.
   void see(const std::vector<WeakDirection>& weak);
 
+  /// The map takes in the scan where the pose says it is.
+  void enterMap();
+
   /// In the parametrisation of \ref RegistrationReport::covariance.
-  [[nodiscard]] const Matrix6& covariance() const { return pose_; }
+  [[nodiscard]] Matrix6 covariance() const { return in_map_ + since_; }
 
 private:
-  Matrix6 pose_ = Matrix6::Zero();
+  Matrix6 in_map_ = Matrix6::Zero();
+  Matrix6 since_ = Matrix6::Zero();              ///< the last scan that entered the map
   Matrix6 pose_and_velocity_ = Matrix6::Zero();  ///< what their errors have in common
   Matrix6 unseen_ = Matrix6::Zero();             ///< projection onto the weak directions
   int scans_that_see_ = 0;                       ///< one after the other

@@ -28,6 +28,7 @@ void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondenc
 {
   correspondence.variance = plane.variance;
   correspondence.tilt = plane.tilt;
+  correspondence.hinged = plane.hinged;
 }
 
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.

@@ -28,6 +28,7 @@ struct Correspondence {
   double variance = 0.0;  ///< of the plane at the point, m^2; 0 for lines
   /// What the plane's normal may be off, one standard deviation along each axis; zero for lines.
   std::array<Eigen::Vector3d, 2> tilt = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  bool hinged = false;           ///< one map point alone holds the plane
   double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
   /// Where the neighbours were searched, in the same frame.
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

@@ -30,7 +30,7 @@ TEST(UnseenDrift, GrowsWithTheTimeAndTheErrorOfTheVelocity)
   EXPECT_TRUE(at_once.covariance().isApprox(100.0 * velocity));  // nothing was seen
 }
 
-TEST(UnseenDrift, EndsWhenTheDirectionIsSeenForASecond)
+TEST(UnseenDrift, EndsWhenTheDirectionIsSeenInTenScans)
 {
   const Matrix6 velocity = 0.01 * Matrix6::Identity();
   UnseenDrift drift;
@@ -48,12 +48,58 @@ TEST(UnseenDrift, EndsWhenTheDirectionIsSeenForASecond)
   EXPECT_TRUE(drift.covariance().isApprox(velocity));  // nothing is left of before
 }
 
+TEST(UnseenDrift, StaysOnceTheMapHasDriftedAlong)
+{
+  const Matrix6 velocity = 0.01 * Matrix6::Identity();
+  UnseenDrift drift;
+  drift.carryOn(velocity, 5.0);
+  drift.see({along(Vector6::UnitX())});
+  drift.enterMap();
+  for (int i = 0; i < 10; ++i) {
+    drift.carryOn(velocity, 1.0);
+    drift.see({});
+  }
+  Matrix6 left = Matrix6::Zero();
+  left(0, 0) = 0.25;  // of what came after nothing
+  EXPECT_TRUE(drift.covariance().isApprox(left));
+  for (int i = 0; i < 100; ++i) {  // weak directions are named a little differently from scan to scan
+    drift.carryOn(Matrix6::Zero(), 1.0);
+    drift.see({along(Vector6::UnitX() + (i % 2 == 0 ? 0.1 : -0.1) * Vector6::UnitY())});
+    drift.enterMap();
+  }
+  EXPECT_TRUE(drift.covariance().isApprox(left));
+}
+
 TEST(UnseenDrift, ASensorThatSawNothingAndSeesAgainIsWhereItIs)
 {
   UnseenDrift drift;
   drift.carryOn(0.01 * Matrix6::Identity(), 10.0);
   drift.see({});
   EXPECT_TRUE(drift.covariance().isZero(0.0));
+}
+
+TEST(UnseenDrift, GrowsAlongADirectionThatIsBothTranslationAndRotation)
+{
+  Vector6 direction;
+  direction << 0.8, 0.0, 0.0, 0.0, 0.0, 0.6;
+  UnseenDrift drift;
+  for (int i = 0; i < 10; ++i) {
+    drift.carryOn(0.01 * Matrix6::Identity(), 1.0);
+    drift.see({along(direction)});
+  }
+  EXPECT_NEAR(drift.covariance()(0, 0), 1.0, 1e-9);
+  EXPECT_NEAR(drift.covariance()(5, 5), 1.0, 1e-9);
+  EXPECT_NEAR(drift.covariance().trace(), 2.0, 1e-9);
+}
+
+TEST(UnseenDrift, TwoDirectionsThatAreNotAtRightAnglesSpanAPlane)
+{
+  UnseenDrift drift;
+  drift.carryOn(0.01 * Matrix6::Identity(), 2.0);
+  drift.see({along(Vector6::UnitX()), along(Vector6::UnitX() + 2.0 * Vector6::UnitY())});
+  EXPECT_NEAR(drift.covariance()(0, 0), 0.04, 1e-9);
+  EXPECT_NEAR(drift.covariance()(1, 1), 0.04, 1e-9);
+  EXPECT_NEAR(drift.covariance().trace(), 0.08, 1e-9);
 }
 
 TEST(UnseenDrift, IsAlongTheDirectionWhateverItIs)

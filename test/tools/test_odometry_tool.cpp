@@ -46,6 +46,14 @@ TEST_F(OdometryTool, FollowsTheDrive)
   }
 }
 
+TEST_F(OdometryTool, SaysInHowManyScansADirectionWasWeak)
+{
+  const Outcome outcome = odometry("scans -o result --weak-threshold 0.1 --plot none");  // nothing is seen well enough
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("weak directions"), std::string::npos);
+  EXPECT_GT(summary()["scans"]["with_weak_directions"], kScans / 2);
+}
+
 TEST_F(OdometryTool, DrawsThePictureIfGnuplotIsThereAndSaysSoIfNot)
 {
   const Outcome outcome = odometry("scans -o result --ground-truth truth.txt");
