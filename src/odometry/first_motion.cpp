@@ -97,14 +97,14 @@ private:
     return candidate;
   }
 
-  /// Once both scans are undistorted, their good planes tell more than all their landmarks: with them, 40 starts along
-  /// simulated corridors and tunnels came to be off in height by 1.4 instead of 2.0 cm in their
-  /// first ten scans.
+  /// Once both scans are undistorted, their good planes tell more than all their landmarks: this alone brought 40
+  /// starts along simulated corridors and tunnels from 2.0 to 1.4 cm, the mean of the greatest errors in height of
+  /// their first ten scans.
   Candidate refinedNearby(const Candidate& start, RegistrationReport& report)
   {
-    constexpr double kNear = 0.1;           // m
-    constexpr double kNearlyTurned = 0.02;  // rad
-    const Candidate fine = refined(start.twist, parameters_.registration);
+    constexpr double kNear = 0.1;           // m per period
+    constexpr double kNearlyTurned = 0.02;  // rad per period
+    Candidate fine = refined(start.twist, parameters_.registration);
     const Vector6 change = fine.twist - start.twist;
     if (!fine.report.hasConverged() || change.head<3>().norm() > kNear || change.tail<3>().norm() > kNearlyTurned) {
       return start;

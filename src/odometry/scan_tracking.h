@@ -41,6 +41,10 @@ inline double typicalRange(const FeatureSet& features)
 struct OdometryPipeline::Impl {
   explicit Impl(const OdometryParameters& p) : parameters(p), map(p.map), clock(p.scan_period), motion(p.compensation)
   {
+    // Five points of a finer map lie closer together.
+    constexpr double kVoxelsWide = 0.25;
+    double& plane_width = parameters.registration.plane_width;
+    plane_width = std::min(plane_width, kVoxelsWide * parameters.map.plane_voxel_size);
   }
 
   OdometryParameters parameters;
@@ -187,7 +191,7 @@ struct OdometryPipeline::Impl {
       compensate(measured, motion.sweep(), undistorted);
       report.milliseconds.compensation += watch.lap();
       map.insert(undistorted, motion.pose(), parameters.threads);
-      if (!prior_map) {
+      if (!prior_map) {  // what an earlier map is kept up to date with counts for less than the map
         motion.enterMap();
       }
       world_T_keyframe = motion.pose();

@@ -50,8 +50,10 @@ void UnseenDrift::see(const std::vector<WeakDirection>& weak)
 
 void UnseenDrift::enterMap()
 {
-  in_map_ += since_;
-  since_.setZero();
+  if (scans_that_see_ == 0) {
+    in_map_ += since_;
+    since_.setZero();
+  }
 }
 
 }  // namespace pcl_floam

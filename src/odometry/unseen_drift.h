@@ -17,11 +17,12 @@ public:
   /// \param periods  since the last scan
   void carryOn(const Matrix6& velocity, double periods);
 
-  /// Keeps what the scan said nothing of. Directions are seen again once ten scans in a row name none as weak: a single
-  /// one may seem to tell of them.
+  /// Keeps what the scan said nothing of. When scans name no direction any more, the last ones count as unseen for ten
+  /// scans: a single one may seem to tell of them.
   void see(const std::vector<WeakDirection>& weak);
 
-  /// The map takes in the scan where the pose says it is.
+  /// The map takes in the scan where the pose says it is: what that is off stays, if the scan named weak directions.
+  /// One that seems to tell of them is where the map says.
   void enterMap();
 
   /// In the parametrisation of \ref RegistrationReport::covariance.
@@ -29,7 +30,7 @@ public:
 
 private:
   Matrix6 in_map_ = Matrix6::Zero();
-  Matrix6 since_ = Matrix6::Zero();              ///< the last scan that entered the map
+  Matrix6 since_ = Matrix6::Zero();              ///< the last scan that took drift into the map
   Matrix6 pose_and_velocity_ = Matrix6::Zero();  ///< what their errors have in common
   Matrix6 unseen_ = Matrix6::Zero();             ///< projection onto the weak directions
   int scans_that_see_ = 0;                       ///< one after the other

@@ -34,7 +34,7 @@ NormalEquations reducedToPose(const NormalEquations& equations, const SweepModel
   if (model.freedom == SweepFreedom::follows_pose) {
     const double slope = model.sweep_per_motion;
     reduced.information += 2.0 * slope * equations.coupling + slope * slope * equations.twist_information;
-    // The normals' noise grows with the rest.
+    // Roughly: the normals' noise grows with the whole, not with the points before and after the reference apart.
     reduced.noise_information *= reduced.information.trace() / equations.information.trace();
     reduced.gradient += slope * equations.twist_gradient;
   }

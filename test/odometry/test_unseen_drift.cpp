@@ -70,6 +70,19 @@ TEST(UnseenDrift, StaysOnceTheMapHasDriftedAlong)
   EXPECT_TRUE(drift.covariance().isApprox(left));
 }
 
+TEST(UnseenDrift, OneWeakScanLeavesNoMoreThanItsOwnDrift)
+{
+  const Matrix6 velocity = 0.01 * Matrix6::Identity();
+  UnseenDrift drift;
+  for (int i = 0; i < 20; ++i) {
+    drift.carryOn(velocity, 1.0);
+    drift.see(i == 5 ? std::vector<WeakDirection>{along(Vector6::UnitX())} : std::vector<WeakDirection>{});
+    drift.enterMap();
+  }
+  EXPECT_NEAR(drift.covariance()(0, 0), 0.01, 1e-9);
+  EXPECT_NEAR(drift.covariance().trace(), 0.01, 1e-9);
+}
+
 TEST(UnseenDrift, ASensorThatSawNothingAndSeesAgainIsWhereItIs)
 {
   UnseenDrift drift;

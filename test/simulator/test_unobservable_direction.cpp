@@ -46,6 +46,12 @@ protected:
     sigma_ = (tunnel_R_first * covariance * tunnel_R_first.transpose()).diagonal().cwiseSqrt();
   }
 
+  [[nodiscard]] double pathLength()
+  {
+    const Sweep last = simulation_.sweep(simulation_.size() - 1);
+    return (last.world_T_middle.translation - world_T_first_.translation).norm();
+  }
+
   [[nodiscard]] bool namesTheWayAlong() const
   {
     const std::vector<WeakDirection>& weak = report_.registration.weak_directions;
@@ -92,6 +98,7 @@ TEST_P(UnobservableDirection, IsReportedAndItsErrorIsWithinItsBounds)
   RecordProperty("farthest_in_height_m", std::to_string(height));
   EXPECT_GT(weak, scans * 95 / 100);
   EXPECT_GT(farthest, 1.0);  // else nothing was shown
+  EXPECT_LT(sigma_.x(), 2.0 * pathLength());
   EXPECT_LT(aside, 0.05);
   EXPECT_LT(height, 0.05);
 }

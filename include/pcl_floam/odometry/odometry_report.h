@@ -40,8 +40,8 @@ struct OdometryReport {
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
-  /// them while poses are predicted) what the velocity may have been off since they were seen last. What the odometry's
-  /// own map took in by then stays. Zero for the first scan.
+  /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map
+  /// without an earlier one took in by then stays. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;

@@ -49,7 +49,9 @@ struct RegistrationParameters {
   double plane_ratio = 20.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
   double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
   /// m; and its root must exceed this, or the noise of the ranges alone, along the scan lines of a single sweep, would
-  /// make planes that stand across floors and ceilings; >= 0. Reasonable: 0.03 to 0.06, less for small objects.
+  /// make planes that stand across floors and ceilings; >= 0. Reasonable: 0.03 to 0.06, and less for small objects: no
+  /// more than half the spacing of the target's points. The odometry takes a quarter of its map's plane voxels if that
+  /// is less.
   double plane_width = 0.05;
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
