@@ -114,9 +114,6 @@ public:
   /// Points that scatter by sigma across a plane, and along it with the covariance C, leave its normal off by
   /// sigma^2 C^-1 / k: here as the two columns of a root of that (Cholesky). The scatter about a plane fitted to the
   /// same k points is less than that about the true one by (k - 3) / k.
-  ///
-  /// With it the way along smooth tunnels is found weak in 859 to 877 of 892 scans, that along corridors with doors in
-  /// 1 to 14 of as many.
   [[nodiscard]] std::array<Eigen::Vector3d, 2> tilt(double across, int count) const
   {
     const double sigma = std::sqrt(across / (count - 3));
