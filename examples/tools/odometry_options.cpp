@@ -205,6 +205,8 @@ void addMapOptions(CLI::App& app, OdometryParameters& p)
   addNumber(app, "--edge-voxel-size", p.map.edge_voxel_size, "M", "one edge point is kept per voxel of this size");
   addNumber(app, "--plane-voxel-size", p.map.plane_voxel_size, "M", "one plane point is kept per voxel of this size");
   addNumber(app, "--horizon", p.map.horizon, "M", "the map forgets what is farther from the sensor");
+  addNumber(app, "--see-through-range", p.map.see_through_range, "M",
+            "up to so far away, the map forgets places that later scans see through: what has gone; 0: never");
   addChoice(app, "--search", p.map.search, {{"voxel", SearchMethod::voxel}, {"kdtree", SearchMethod::kdtree}},
             "nearest-neighbour search; both find the same points");
 }

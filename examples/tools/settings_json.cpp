@@ -71,6 +71,7 @@ Json mapJson(const OdometryParameters& p)
           {"edge_voxel_size_m", p.map.edge_voxel_size},
           {"plane_voxel_size_m", p.map.plane_voxel_size},
           {"horizon_m", p.map.horizon},
+          {"see_through_range_m", p.map.see_through_range},
           {"search", toString(p.map.search)}};
 }
 

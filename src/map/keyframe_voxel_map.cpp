@@ -17,6 +17,7 @@ void validate(const MapParameters& p)
   check.above("edge_voxel_size", p.edge_voxel_size, 0.0);
   check.above("plane_voxel_size", p.plane_voxel_size, 0.0);
   check.above("horizon", p.horizon, 0.0);
+  check.atLeast("see_through_range", p.see_through_range, 0.0);
 }
 
 struct KeyframeVoxelMap::Impl {
@@ -96,6 +97,16 @@ void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::V
     }
   }
   impl_->rebuildTrees();
+}
+
+void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor)
+{
+  if (impl_->parameters.see_through_range > 0.0) {
+    const RangeImage scan(points);
+    impl_->edges.weakenSeenThrough(scan, world_T_sensor, impl_->parameters.see_through_range);
+    impl_->planes.weakenSeenThrough(scan, world_T_sensor, impl_->parameters.see_through_range);
+    impl_->rebuildTrees();
+  }
 }
 
 void KeyframeVoxelMap::crop(const Eigen::Vector3d& center)

@@ -63,6 +63,25 @@ public:
     return true;
   }
 
+  /// Takes \p weight from voxel \p i; one without any left is no longer occupied, and the last takes its place.
+  /// \return false then
+  bool weaken(std::size_t i, float weight)
+  {
+    voxels_[i].count -= weight;
+    if (voxels_[i].count > 0.0F) {
+      return true;
+    }
+    const std::size_t last = voxels_.size() - 1;
+    set(i, point(last));
+    voxels_[i] = voxels_[last];
+    set(last, {std::numeric_limits<float>::infinity(), 0.0F, 0.0F});
+    voxels_.pop_back();
+    if (voxels_.size() % kLanes == 0) {
+      groups_.pop_back();
+    }
+    return false;
+  }
+
   /// \param corner of the block, seen from the query
   void search(const Eigen::Vector3f& corner, NearestSoFar& nearest) const
   {

@@ -2,8 +2,10 @@
 /// One layer of the map: down-sampled points in hashed voxels, and the nearest neighbours among them.
 #pragma once
 
+#include "map/range_image.h"
 #include "map/voxel_block.h"
 
+#include <pcl_floam/common/se3.h>
 #include <pcl_floam/map/neighbor_search.h>
 
 #include <Eigen/Core>
@@ -32,6 +34,9 @@ public:
 
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
+
+  /// Takes weight from the voxels within \p radius that a scan sees through; a few such scans, and they are forgotten.
+  void weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius);
 
   void clear();
 

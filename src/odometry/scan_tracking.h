@@ -5,6 +5,7 @@
 #include "odometry/constant_velocity.h"
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
+#include "odometry/scan_sample.h"
 #include "odometry/stopwatch.h"
 #include "odometry/vertical_correction.h"
 
@@ -85,7 +86,7 @@ struct OdometryPipeline::Impl {
     if (!report.registration.hasConverged()) {
       return predictOnly(toString(report.registration.termination));
     }
-    updateMap();
+    updateMap(scan);
     return finish(TrackingState::tracked);
   }
 
@@ -181,7 +182,7 @@ struct OdometryPipeline::Impl {
   }
 
   // Mapping Building & Distortion Compensation Update (Eq. 12)
-  void updateMap()
+  void updateMap(const CloudView& scan)
   {
     motion.update(report.registration, world_T_predicted, typicalRange(measured));
     report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, motion.pose());
@@ -190,6 +191,7 @@ struct OdometryPipeline::Impl {
       // tests came to 6.1 instead of 4.9 cm.
       compensate(measured, motion.sweep(), undistorted);
       report.milliseconds.compensation += watch.lap();
+      forgetWhatHasGone(scan);
       map.insert(undistorted, motion.pose(), parameters.threads);
       if (!prior_map) {  // what an earlier map is kept up to date with counts for less than the map
         motion.enterMap();
@@ -198,6 +200,18 @@ struct OdometryPipeline::Impl {
       ++keyframes;
     }
     report.milliseconds.map += watch.lap();
+  }
+
+  /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
+  /// at only now and then.
+  void forgetWhatHasGone(const CloudView& scan)
+  {
+    constexpr int kKeyframesBetween = 7;
+    if (parameters.map.see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
+      map.forgetSeenThrough(undistortedSample(scan, lines, timing, parameters.features, parameters.vertical_correction,
+                                              motion.sweep()),
+                            motion.pose());
+    }
   }
 
   /// The first usable scan.

@@ -150,6 +150,9 @@ TEST(KeyframeVoxelMap, SettingsOutOfRangeAreRefused)
   parameters = {};
   parameters.horizon = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(KeyframeVoxelMap{parameters}, std::invalid_argument);
+  parameters = {};
+  parameters.see_through_range = -1.0;
+  EXPECT_THROW(KeyframeVoxelMap{parameters}, std::invalid_argument);
 }
 
 TEST(KeyframePolicy, TakesAScanAfterEitherThreshold)

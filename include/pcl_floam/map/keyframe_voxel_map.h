@@ -31,6 +31,9 @@ struct MapParameters {
   double edge_voxel_size = 0.1;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
   double plane_voxel_size = 0.2;  ///< m, > 0. Reasonable: 0.1 to 1
   double horizon = 150.0;         ///< m, > 0: points farther from the sensor are forgotten
+  /// m, >= 0: up to so far away, places that later scans see through are forgotten: cars and people that have gone.
+  /// 0: never. Reasonable: 10 to 50
+  double see_through_range = 40.0;
   SearchMethod search = SearchMethod::voxel;
 };
 
@@ -65,6 +68,12 @@ public:
 
   /// Adds points to a layer, as they are in a saved map. World frame, m; points that are not finite are left out.
   void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
+
+  /// Takes weight from the voxels that a scan sees through, up to `see_through_range` from the sensor, and forgets those
+  /// that have none left. A voxel that was hit once or a few times goes at once, one that was hit often after some scans.
+  /// \param points         of one scan, in the sensor's frame, undistorted; ones that are not finite are left out
+  /// \param world_T_sensor finite
+  void forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor);
 
   /// Forgets all points farther than the horizon from \p center.
   void crop(const Eigen::Vector3d& center);

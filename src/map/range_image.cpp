@@ -1,0 +1,119 @@
+#include "map/range_image.h"
+
+#include "filters/azimuth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace pcl_floam {
+
+RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
+    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero()),
+      farthest_(nearest_.size() / (kCoarse * kCoarse), 0.0F)
+{
+  for (const Eigen::Vector3f& point : points) {
+    const Cell cell = cellOf(point);
+    if (cell.row < 0 || cell.row >= kRows) {
+      continue;
+    }
+    Eigen::Vector3f& nearest = nearest_[static_cast<std::size_t>(cell.row * kColumns + cell.column)];
+    if (nearest.isZero(0.0F) || point.squaredNorm() < nearest.squaredNorm()) {
+      nearest = point;
+    }
+    float& farthest =
+        farthest_[static_cast<std::size_t>(cell.row / kCoarse * (kColumns / kCoarse) + cell.column / kCoarse)];
+    farthest = std::max(farthest, point.norm());
+  }
+}
+
+RangeImage::Cell RangeImage::cellOf(const Eigen::Vector3f& direction)
+{
+  const float slope = direction.z() / std::sqrt(direction.x() * direction.x() + direction.y() * direction.y());
+  if (!(std::abs(slope) < kSteepest)) {  // NaN, too
+    return {0, -1};
+  }
+  const float azimuth = pseudoAzimuth(direction.x(), direction.y()) * (kColumns / 4.0F);
+  return {std::min(static_cast<int>(azimuth), kColumns - 1),
+          static_cast<int>((slope + kSteepest) * (kRows / (2.0F * kSteepest)))};
+}
+
+float RangeImage::clearlyBeyond(float range)
+{
+  constexpr float kFarther = 1.15F;
+  constexpr float kClearlyFarther = 0.5F;  // m
+  return kFarther * range + kClearlyFarther;
+}
+
+bool RangeImage::maySeeThrough(const Eigen::Vector3f& center, float radius) const
+{
+  const Cell cell = cellOf(center);
+  const float range = center.norm();
+  // Nearer ones fill more than the coarse cells around their own.
+  constexpr float kSmall = 0.2F;  // rad: a coarse cell at least
+  if (radius > kSmall * range || cell.row < 0 || cell.row >= kRows) {
+    return true;
+  }
+  const float far = clearlyBeyond(range - radius);
+  constexpr int kCoarseColumns = kColumns / kCoarse;
+  for (int row = std::max(cell.row / kCoarse - 1, 0); row <= std::min(cell.row / kCoarse + 1, kRows / kCoarse - 1);
+       ++row) {
+    for (int step = -1; step <= 1; ++step) {
+      const int column = (cell.column / kCoarse + step + kCoarseColumns) % kCoarseColumns;
+      if (farthest_[static_cast<std::size_t>(row * kCoarseColumns + column)] >= far) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// True if no return of the row, near the column, is nearer than \p range.
+bool RangeImage::allBeyond(int column, int row, float range) const
+{
+  for (int step = -1; step <= 1; ++step) {
+    const Eigen::Vector3f& near = at((column + step + kColumns) % kColumns, row);
+    if (!near.isZero(0.0F) && near.squaredNorm() < range * range) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// The same for the next line of the scan above or below. A beam that passes just above a floor goes on far beyond,
+/// too; but the line below it does not.
+bool RangeImage::nextBeyond(const Cell& cell, int up, float range) const
+{
+  constexpr int kMostRows = 4;  // 2.6 degrees: scan lines are closer together
+  for (int row = cell.row + up; row >= 0 && row < kRows && std::abs(row - cell.row) <= kMostRows; row += up) {
+    if (!allBeyond(cell.column, row, range)) {
+      return false;
+    }
+    if (!at(cell.column, row).isZero(0.0F)) {
+      return true;
+    }
+  }
+  return true;
+}
+
+bool RangeImage::seesThrough(const Eigen::Vector3f& place) const
+{
+  const Cell cell = cellOf(place);
+  if (cell.row < 0 || cell.row >= kRows) {
+    return false;
+  }
+  const float range = place.norm();
+  const float far = clearlyBeyond(range);
+  if (at(cell.column, cell.row).squaredNorm() < far * far) {  // or there is none
+    return false;
+  }
+  if (!allBeyond(cell.column, cell.row, far) || !nextBeyond(cell, 1, far) || !nextBeyond(cell, -1, far)) {
+    return false;
+  }
+  constexpr float kThrough = 0.05F;           // m from the beam
+  constexpr float kThroughPerRange = 0.012F;  // rad: a cell
+  const Eigen::Vector3f beam = at(cell.column, cell.row).normalized();
+  return (place - beam.dot(place) * beam).norm() < std::max(kThrough, kThroughPerRange * range);
+}
+
+}  // namespace pcl_floam

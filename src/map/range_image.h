@@ -1,0 +1,50 @@
+/// \file range_image.h
+/// How far a scan sees in each direction.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcl_floam {
+
+/// The nearest return of a scan in each of a grid of directions, about 0.7 degrees apart.
+class RangeImage {
+public:
+  /// \param points of one scan, in the sensor's frame; ones that are not finite are left out
+  explicit RangeImage(const std::vector<Eigen::Vector3f>& points);
+
+  /// True if a beam went through this place, in the sensor's frame, and on for clearly farther, and so did all beams
+  /// around it. What no beam met, above all the directions without returns, is not seen through.
+  [[nodiscard]] bool seesThrough(const Eigen::Vector3f& place) const;
+
+  /// False if no place within \p radius of this one is seen through; quicker to tell than for each of them.
+  [[nodiscard]] bool maySeeThrough(const Eigen::Vector3f& center, float radius) const;
+
+private:
+  /// Azimuth as \ref pseudoAzimuth, and the tangent of the elevation.
+  static constexpr int kColumns = 512;
+  static constexpr int kRows = 208;
+  static constexpr float kSteepest = 1.2F;  ///< 50 degrees up and down
+  static constexpr int kCoarse = 16;        ///< cells along the side of a coarse one
+
+  struct Cell {
+    int column;
+    int row;  ///< out of [0, kRows) where it is steeper
+  };
+
+  [[nodiscard]] static float clearlyBeyond(float range);
+  [[nodiscard]] static Cell cellOf(const Eigen::Vector3f& direction);
+  [[nodiscard]] bool allBeyond(int column, int row, float range) const;
+  [[nodiscard]] bool nextBeyond(const Cell& cell, int up, float range) const;
+  [[nodiscard]] const Eigen::Vector3f& at(int column, int row) const
+  {
+    return nearest_[static_cast<std::size_t>(row * kColumns + column)];
+  }
+
+  std::vector<Eigen::Vector3f> nearest_;  ///< return of each cell; zero where there is none
+  std::vector<float> farthest_;           ///< range of each coarse cell; zero where there is no return
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,24 @@
+/// \file scan_sample.h
+/// Points of a whole scan, of which the features are but a part.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/sweep_motion.h>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// Some hundred points of each scan line, evenly spread, as seen at the motion's reference instant.
+/// \param ranges points nearer or farther than these are left out
+/// \param vertical_correction degrees
+[[nodiscard]] std::vector<Eigen::Vector3f> undistortedSample(const CloudView& scan, const ScanLines& lines,
+                                                             const ScanTiming& timing, const FeatureParameters& ranges,
+                                                             double vertical_correction, const SweepMotion& motion);
+
+}  // namespace pcl_floam

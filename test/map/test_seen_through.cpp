@@ -1,0 +1,231 @@
+// What later scans see through leaves the map.
+#include <pcl_floam/map/keyframe_voxel_map.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace pcl_floam::test {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+
+constexpr float kHeight = 0.4F;  // of the sensor above the floor
+constexpr float kPi = 3.14159265F;
+
+/// Where a beam from the origin meets the floor, a wall around the sensor, or a pillar ahead of it.
+Eigen::Vector3f meet(float azimuth, float elevation, float wall, bool pillar)
+{
+  const Eigen::Vector3f beam(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+                             std::sin(elevation));
+  float range = wall / std::cos(elevation);
+  if (elevation < 0.0F) {
+    range = std::min(range, kHeight / -std::sin(elevation));
+  }
+  if (pillar && std::abs(azimuth) < 0.1F) {
+    range = std::min(range, 5.0F / std::cos(elevation));
+  }
+  return range * beam;
+}
+
+/// A scan of \p lines over 33 degrees, its points \p step apart in azimuth.
+Points scanOf(float wall, bool pillar, float step = 0.006F, int lines = 64)
+{
+  Points points;
+  for (int line = 0; line < lines; ++line) {
+    for (float azimuth = -kPi; azimuth < kPi; azimuth += step) {
+      const float share = static_cast<float>(line) / static_cast<float>(lines);
+      points.push_back(meet(azimuth, -0.45F + 0.576F * share, wall, pillar));
+    }
+  }
+  return points;
+}
+
+FeatureSet featuresAt(const Points& points)
+{
+  FeatureSet features;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Feature feature;
+    feature.x = points[i].x();
+    feature.y = points[i].y();
+    feature.z = points[i].z();
+    (i % 5 == 0 ? features.edges : features.planes).push_back(feature);
+  }
+  return features;
+}
+
+std::size_t pillarPoints(const KeyframeVoxelMap& map, const SE3& pose)
+{
+  std::size_t count = 0;
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    for (const Eigen::Vector3d& point : map.points(kind)) {
+      const Eigen::Vector3d seen = pose.inverse() * point;
+      count += std::abs(seen.x() - 5.0) < 0.3 && std::abs(seen.y()) < 0.6 && seen.z() > -0.39 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+std::size_t size(const KeyframeVoxelMap& map)
+{
+  return map.size(FeatureKind::edge) + map.size(FeatureKind::plane);
+}
+
+class SeenThroughAnywhere : public testing::TestWithParam<double> {
+protected:
+  /// Turned about the vertical, so that the axes of map and sensor differ; up to 1000 km from the map's origin.
+  SE3 pose{expSO3(Eigen::Vector3d(0.0, 0.0, 0.7)), Eigen::Vector3d(GetParam(), -GetParam(), 3.0)};
+};
+
+INSTANTIATE_TEST_SUITE_P(FromTheOrigin, SeenThroughAnywhere, testing::Values(0.0, 1e6));
+
+TEST_P(SeenThroughAnywhere, WhatHasGoneIsForgottenAndTheRestIsNot)
+{
+  KeyframeVoxelMap map;
+  map.insert(featuresAt(scanOf(15.0F, true)), pose);
+  const std::size_t before = size(map);
+  const std::size_t pillar = pillarPoints(map, pose);
+  ASSERT_GT(pillar, 20U);
+  map.forgetSeenThrough(scanOf(15.0F, true), pose);
+  EXPECT_EQ(size(map), before);
+  // Voxels of the pillar are hit by up to twenty beams of the one scan: they take several looks.
+  for (int looks = 0; looks < 5; ++looks) {
+    map.forgetSeenThrough(scanOf(15.0F, false), pose);
+  }
+  EXPECT_LT(static_cast<double>(pillarPoints(map, pose)), 0.3 * static_cast<double>(pillar));
+  EXPECT_GE(size(map) + pillar, before);  // no others
+}
+
+TEST_P(SeenThroughAnywhere, NeighboursAreFoundAsIfItHadNeverBeenThere)
+{
+  KeyframeVoxelMap map;
+  map.insert(featuresAt(scanOf(15.0F, true, 0.1F)), pose);
+  for (int looks = 0; looks < 5; ++looks) {
+    map.forgetSeenThrough(scanOf(15.0F, false), pose);
+  }
+  KeyframeVoxelMap left;
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    left.insertPoints(kind, map.points(kind));
+    ASSERT_EQ(left.size(kind), map.size(kind));
+    ASSERT_EQ(map.points(kind).size(), map.size(kind));
+    for (const Eigen::Vector3f& point : scanOf(15.0F, true, 0.5F)) {
+      Neighbors expected;
+      Neighbors found;
+      left.search(kind).nearest(pose * point.cast<double>(), 5, 2.0, expected);
+      map.search(kind).nearest(pose * point.cast<double>(), 5, 2.0, found);
+      ASSERT_EQ(found.count, expected.count);
+      for (int i = 0; i < found.count; ++i) {
+        EXPECT_FLOAT_EQ(found[i].squared_distance, expected[i].squared_distance);
+      }
+    }
+  }
+}
+
+TEST(SeenThrough, DirectionsWithoutReturnsTellNothing)
+{
+  KeyframeVoxelMap map;
+  map.insert(featuresAt(scanOf(15.0F, true)), SE3());
+  const std::size_t before = size(map);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  map.forgetSeenThrough({}, SE3());
+  map.forgetSeenThrough({{nan, 0.0F, 0.0F}, {nan, nan, nan}, {0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 9.0F}}, SE3());
+  EXPECT_EQ(size(map), before);
+}
+
+TEST(SeenThrough, WhatWasSeenOftenStaysLonger)
+{
+  KeyframeVoxelMap once;
+  KeyframeVoxelMap often;
+  for (int times = 0; times < 20; ++times) {
+    often.insert(featuresAt(scanOf(15.0F, true, 0.05F)), SE3());
+  }
+  once.insert(featuresAt(scanOf(15.0F, true, 0.05F)), SE3());
+  const std::size_t once_before = pillarPoints(once, SE3());
+  const std::size_t often_before = pillarPoints(often, SE3());
+  once.forgetSeenThrough(scanOf(15.0F, false), SE3());
+  often.forgetSeenThrough(scanOf(15.0F, false), SE3());
+  EXPECT_LT(pillarPoints(once, SE3()), once_before);
+  EXPECT_EQ(pillarPoints(often, SE3()), often_before);
+  often.forgetSeenThrough(scanOf(15.0F, false), SE3());
+  EXPECT_LT(pillarPoints(often, SE3()), often_before);
+}
+
+TEST(SeenThrough, OnlyWithinItsRange)
+{
+  for (const double range : {0.0, 3.0}) {
+    MapParameters parameters;
+    parameters.see_through_range = range;
+    KeyframeVoxelMap map(parameters);
+    map.insert(featuresAt(scanOf(15.0F, true, 0.05F)), SE3());
+    const std::size_t before = size(map);
+    map.forgetSeenThrough(scanOf(15.0F, false), SE3());
+    EXPECT_EQ(size(map), before) << range;
+  }
+}
+
+TEST(SeenThrough, TheTreesForgetToo)
+{
+  MapParameters parameters;
+  parameters.search = SearchMethod::kdtree;
+  KeyframeVoxelMap map(parameters);
+  map.insert(featuresAt(scanOf(15.0F, true, 0.05F)), SE3());
+  const auto pillarFound = [&] {
+    std::vector<Neighbor> neighbors;
+    map.search(FeatureKind::plane).within({5.0, 0.0, 0.5}, 0.5, neighbors);
+    return neighbors.size();
+  };
+  const std::size_t before = pillarFound();
+  ASSERT_GT(before, 3U);
+  map.forgetSeenThrough(scanOf(15.0F, false), SE3());
+  EXPECT_LT(pillarFound(), before);
+}
+
+/// The floor as a low sensor's scan sees it from here, and again from a little farther on.
+TEST(SeenThrough, TheFloorStaysWhereBeamsPassJustAboveIt)
+{
+  for (const int lines : {64, 16}) {
+    KeyframeVoxelMap map;
+    map.insert(featuresAt(scanOf(28.0F, false, 0.006F, 64)), SE3());
+    const std::size_t before = size(map);
+    for (const float ahead : {0.0F, 0.1F, 0.35F, 0.8F, 2.0F}) {
+      Points scan;
+      for (const Eigen::Vector3f& point : scanOf(28.0F, false, 0.006F, lines)) {
+        if (point.z() < -kHeight + 1e-3F) {  // the wall would move with the sensor
+          scan.push_back(point);
+        }
+      }
+      map.forgetSeenThrough(scan, SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(ahead, 0.0, 0.0)));
+    }
+    EXPECT_EQ(size(map), before) << lines;
+  }
+}
+
+/// Boards of a rack, 4 cm thick, before a wall: most beams pass between them.
+TEST(SeenThrough, BoardsStay)
+{
+  Points boards;
+  for (float y = -3.0F; y <= 3.0F; y += 0.05F) {
+    for (float z = -1.0F; z <= 1.0F; z += 0.5F) {
+      boards.emplace_back(4.0F, y, z);
+    }
+  }
+  KeyframeVoxelMap map;
+  map.insert(featuresAt(boards), SE3());
+  const std::size_t before = size(map);
+  Points scan;
+  for (int line = 0; line < 16; ++line) {
+    for (float azimuth = -0.6F; azimuth < 0.6F; azimuth += 0.0035F) {
+      const Eigen::Vector3f beam(1.0F, std::tan(azimuth), std::tan(0.0349F * (static_cast<float>(line) - 7.5F)));
+      const float height = 4.0F * beam.z();
+      const bool board = std::abs(height - 0.5F * std::round(height / 0.5F)) < 0.02F;
+      scan.emplace_back((board ? 4.0F : 9.0F) * beam);
+    }
+  }
+  map.forgetSeenThrough(scan, SE3());
+  EXPECT_GT(static_cast<double>(size(map)), 0.8 * static_cast<double>(before));
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
