@@ -99,12 +99,14 @@ void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::V
   impl_->rebuildTrees();
 }
 
-void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor)
+void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor,
+                                         int threads)
 {
-  if (impl_->parameters.see_through_range > 0.0) {
+  const double range = impl_->parameters.see_through_range;
+  if (range > 0.0) {
     const RangeImage scan(points);
-    impl_->edges.weakenSeenThrough(scan, world_T_sensor, impl_->parameters.see_through_range);
-    impl_->planes.weakenSeenThrough(scan, world_T_sensor, impl_->parameters.see_through_range);
+    impl_->edges.weakenSeenThrough(scan, world_T_sensor, range, threads);
+    impl_->planes.weakenSeenThrough(scan, world_T_sensor, range, threads);
     impl_->rebuildTrees();
   }
 }

@@ -9,8 +9,7 @@
 namespace pcl_floam {
 
 RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
-    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero()),
-      farthest_(nearest_.size() / (kCoarse * kCoarse), 0.0F)
+    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero())
 {
   for (const Eigen::Vector3f& point : points) {
     const Cell cell = cellOf(point);
@@ -21,9 +20,6 @@ RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
     if (nearest.isZero(0.0F) || point.squaredNorm() < nearest.squaredNorm()) {
       nearest = point;
     }
-    float& farthest =
-        farthest_[static_cast<std::size_t>(cell.row / kCoarse * (kColumns / kCoarse) + cell.column / kCoarse)];
-    farthest = std::max(farthest, point.norm());
   }
 }
 
@@ -43,29 +39,6 @@ float RangeImage::clearlyBeyond(float range)
   constexpr float kFarther = 1.15F;
   constexpr float kClearlyFarther = 0.5F;  // m
   return kFarther * range + kClearlyFarther;
-}
-
-bool RangeImage::maySeeThrough(const Eigen::Vector3f& center, float radius) const
-{
-  const Cell cell = cellOf(center);
-  const float range = center.norm();
-  // Nearer ones fill more than the coarse cells around their own.
-  constexpr float kSmall = 0.2F;  // rad: a coarse cell at least
-  if (radius > kSmall * range || cell.row < 0 || cell.row >= kRows) {
-    return true;
-  }
-  const float far = clearlyBeyond(range - radius);
-  constexpr int kCoarseColumns = kColumns / kCoarse;
-  for (int row = std::max(cell.row / kCoarse - 1, 0); row <= std::min(cell.row / kCoarse + 1, kRows / kCoarse - 1);
-       ++row) {
-    for (int step = -1; step <= 1; ++step) {
-      const int column = (cell.column / kCoarse + step + kCoarseColumns) % kCoarseColumns;
-      if (farthest_[static_cast<std::size_t>(row * kCoarseColumns + column)] >= far) {
-        return true;
-      }
-    }
-  }
-  return false;
 }
 
 /// True if no return of the row, near the column, is nearer than \p range.

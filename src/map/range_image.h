@@ -19,15 +19,11 @@ public:
   /// around it. What no beam met, above all the directions without returns, is not seen through.
   [[nodiscard]] bool seesThrough(const Eigen::Vector3f& place) const;
 
-  /// False if no place within \p radius of this one is seen through; quicker to tell than for each of them.
-  [[nodiscard]] bool maySeeThrough(const Eigen::Vector3f& center, float radius) const;
-
 private:
   /// Azimuth as \ref pseudoAzimuth, and the tangent of the elevation.
   static constexpr int kColumns = 512;
   static constexpr int kRows = 208;
   static constexpr float kSteepest = 1.2F;  ///< 50 degrees up and down
-  static constexpr int kCoarse = 16;        ///< cells along the side of a coarse one
 
   struct Cell {
     int column;
@@ -44,7 +40,6 @@ private:
   }
 
   std::vector<Eigen::Vector3f> nearest_;  ///< return of each cell; zero where there is none
-  std::vector<float> farthest_;           ///< range of each coarse cell; zero where there is no return
 };
 
 }  // namespace pcl_floam

@@ -258,30 +258,28 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
   }
 }
 
-void VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius)
+void VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads)
 {
   // A voxel that was hit often, as that of a car that was parked for a while, takes more than one such scan.
   constexpr float kWeight = 10.0F;
   const SE3 sensor_T_world = world_T_sensor.inverse();
   const Eigen::Matrix3f rotation = sensor_T_world.rotation.cast<float>();
-  const auto half = static_cast<float>(0.5 * block_size_);
-  const float half_diagonal = half * std::sqrt(3.0F);
-  for (VoxelBlock& block : blocks_) {
+  std::size_t forgotten = 0;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 64) reduction(+ : forgotten)
+  for (std::ptrdiff_t b = 0; b < static_cast<std::ptrdiff_t>(blocks_.size()); ++b) {
+    VoxelBlock& block = blocks_[static_cast<std::size_t>(b)];
     const Eigen::Vector3d corner = block_size_ * Eigen::Vector3d(block.key.x, block.key.y, block.key.z);
     if ((corner - world_T_sensor.translation).squaredNorm() > radius * radius) {
       continue;
     }
     const Eigen::Vector3f corner_in_sensor = (sensor_T_world * corner).cast<float>();
-    if (!scan.maySeeThrough(corner_in_sensor + rotation * Eigen::Vector3f::Constant(half), half_diagonal)) {
-      continue;
-    }
     for (std::size_t i = 0; i < block.size();) {
-      const bool stays =
-          !scan.seesThrough(corner_in_sensor + rotation * block.point(i)) || block.weaken(i, kWeight);
+      const bool stays = !scan.seesThrough(corner_in_sensor + rotation * block.point(i)) || block.weaken(i, kWeight);
       i += stays ? 1 : 0;
-      size_ -= stays ? 0 : 1;
+      forgotten += stays ? 0 : 1;
     }
   }
+  size_ -= forgotten;
 }
 
 void VoxelLayer::clear()

@@ -35,8 +35,9 @@ public:
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
 
-  /// Takes weight from the voxels within \p radius that a scan sees through; a few such scans, and they are forgotten.
-  void weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius);
+  /// Takes weight from the voxels within \p radius that a scan sees through; those that have none left are forgotten.
+  /// \param threads >= 1; the layer does not depend on it
+  void weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads = 1);
 
   void clear();
 

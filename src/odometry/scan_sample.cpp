@@ -10,7 +10,7 @@ std::vector<Eigen::Vector3f> undistortedSample(const CloudView& scan, const Scan
                                                const FeatureParameters& ranges, double vertical_correction,
                                                const SweepMotion& motion)
 {
-  constexpr int kMost = 16000;
+  constexpr int kMost = 12000;
   const int per_line = std::max(1, kMost / std::max(1, static_cast<int>(lines.lines())));
   FeatureSet measured;
   for (std::size_t m = 0; m < lines.lines(); ++m) {

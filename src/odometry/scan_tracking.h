@@ -202,15 +202,15 @@ struct OdometryPipeline::Impl {
     report.milliseconds.map += watch.lap();
   }
 
-  /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
-  /// at only now and then.
+  /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is
+  /// looked at only now and then.
   void forgetWhatHasGone(const CloudView& scan)
   {
     constexpr int kKeyframesBetween = 7;
     if (parameters.map.see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
-      map.forgetSeenThrough(undistortedSample(scan, lines, timing, parameters.features, parameters.vertical_correction,
-                                              motion.sweep()),
-                            motion.pose());
+      map.forgetSeenThrough(
+          undistortedSample(scan, lines, timing, parameters.features, parameters.vertical_correction, motion.sweep()),
+          motion.pose(), parameters.threads);
     }
   }
 

@@ -98,6 +98,20 @@ TEST_P(SeenThroughAnywhere, WhatHasGoneIsForgottenAndTheRestIsNot)
   EXPECT_GE(size(map) + pillar, before);  // no others
 }
 
+TEST_P(SeenThroughAnywhere, AllThreadsForgetTheSame)
+{
+  std::vector<std::vector<Eigen::Vector3d>> left;
+  for (const int threads : {1, 2, 3, 8}) {
+    KeyframeVoxelMap map;
+    map.insert(featuresAt(scanOf(15.0F, true, 0.05F)), pose);
+    const std::size_t before = size(map);
+    map.forgetSeenThrough(scanOf(15.0F, false), pose, threads);
+    EXPECT_LT(size(map), before);
+    left.push_back(map.points(FeatureKind::plane));
+    EXPECT_EQ(left.front(), left.back()) << threads;
+  }
+}
+
 TEST_P(SeenThroughAnywhere, NeighboursAreFoundAsIfItHadNeverBeenThere)
 {
   KeyframeVoxelMap map;

@@ -73,7 +73,8 @@ public:
   /// that have none left. A voxel that was hit once or a few times goes at once, one that was hit often after some scans.
   /// \param points         of one scan, in the sensor's frame, undistorted; ones that are not finite are left out
   /// \param world_T_sensor finite
-  void forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor);
+  /// \param threads        >= 1; the map does not depend on it
+  void forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor, int threads = 1);
 
   /// Forgets all points farther than the horizon from \p center.
   void crop(const Eigen::Vector3d& center);
