@@ -22,6 +22,11 @@ constexpr float kAcross = 0.3F;
 
 constexpr float kNeverFlat = std::numeric_limits<float>::max();
 
+struct EdgeCandidate {
+  float sharpness;
+  int place;  ///< in the line
+};
+
 /// Scratch memory for one scan line after another.
 struct LineScratch {
   LinePoints points;
@@ -29,7 +34,7 @@ struct LineScratch {
   std::vector<std::int32_t> unfit;
   std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
   std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
-  std::vector<int> candidates;
+  std::vector<EdgeCandidate> candidates;
   std::vector<float> sample;  ///< of sigma
 };
 
@@ -128,22 +133,23 @@ private:
     return std::max(parameters_.edge_threshold, parameters_.edge_noise_ratio * medianOf(line_.sample));
   }
 
-  /// The points of highest smoothness, at least a neighbourhood apart.
+  /// The points of highest smoothness, at least a neighbourhood apart. Most candidates are never looked at closely.
   void selectEdges(int first, int last)
   {
     findEdgeCandidates(first, last);
-    for (int taken = 0; taken < parameters_.edges_per_sector; ++taken) {
-      int sharpest = -1;
-      for (const int n : line_.candidates) {
-        if (sharpness(n) > (sharpest < 0 ? 0.0F : sharpness(sharpest))) {
-          sharpest = n;
-        }
+    const auto isLess = [](const EdgeCandidate& a, const EdgeCandidate& b) {
+      return a.sharpness != b.sharpness ? a.sharpness < b.sharpness : a.place > b.place;
+    };
+    std::vector<EdgeCandidate>& heap = line_.candidates;
+    std::make_heap(heap.begin(), heap.end(), isLess);
+    for (int taken = 0; taken < parameters_.edges_per_sector && !heap.empty(); heap.pop_back()) {
+      std::pop_heap(heap.begin(), heap.end(), isLess);
+      const int sharpest = heap.back().place;
+      if (isEdge(sharpest)) {
+        features_.edges.push_back(makeFeature(sharpest));
+        takeNeighborhood(sharpest);
+        ++taken;
       }
-      if (sharpest < 0) {
-        return;
-      }
-      features_.edges.push_back(makeFeature(sharpest));
-      takeNeighborhood(sharpest);
     }
   }
 
@@ -158,8 +164,8 @@ private:
         sum += sharpness(n);
       }
       for (int n = begin; n < end && sum > 0.0F; ++n) {
-        if (isEdge(n)) {
-          line_.candidates.push_back(n);
+        if (sharpness(n) > 0.0F) {
+          line_.candidates.push_back({sharpness(n), n});
         }
       }
     }
@@ -167,7 +173,7 @@ private:
 
   [[nodiscard]] bool isEdge(int n) const
   {
-    if (!(sharpness(n) > 0.0F)) {
+    if (!(sharpness(n) > 0.0F)) {  // in the neighbourhood of one taken since
       return false;
     }
     const float distance = meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);

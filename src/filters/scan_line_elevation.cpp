@@ -1,4 +1,5 @@
 // Scan lines from the points' elevations: a sensor's table, or clusters found in the scan.
+#include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
@@ -16,16 +17,14 @@ float elevationOf(const CloudView& cloud, std::size_t i)
 /// Assigns each point to the nearest of the rising \p elevations, if it is nearer than \p tolerance times the
 /// distance to that beam's neighbours.
 /// \return fraction of the measurable points that were assigned
-float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance, ScanLines& lines)
+float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance, int threads,
+                       ScanLines& lines)
 {
-  std::vector<std::int32_t> line_of_point(cloud.size, -1);
-  std::size_t measurable = 0;
-  std::size_t assigned = 0;
-  for (std::size_t i = 0; i < cloud.size; ++i) {
+  LineGrouping grouping(cloud.size, threads);
+  grouping.assign([&](std::size_t i) {
     if (!isMeasurable(cloud, i)) {
-      continue;
+      return LineGrouping::kNotMeasurable;
     }
-    ++measurable;
     const float elevation = elevationOf(cloud, i);
     const auto above = std::lower_bound(elevations.begin(), elevations.end(), elevation);
     auto nearest = above == elevations.end() ? above - 1 : above;
@@ -36,13 +35,13 @@ float groupByElevation(const CloudView& cloud, const std::vector<float>& elevati
     const float gap = (nearest != elevations.begin() && (!has_next || elevation < *nearest))
                           ? *nearest - *(nearest - 1)
                           : *(nearest + 1) - *nearest;
-    if (std::abs(elevation - *nearest) <= tolerance * gap) {
-      line_of_point[i] = static_cast<std::int32_t>(nearest - elevations.begin());
-      ++assigned;
-    }
-  }
-  groupByLine(cloud, line_of_point, static_cast<int>(elevations.size()), lines);
-  return measurable == 0 ? 0.0F : static_cast<float>(assigned) / static_cast<float>(measurable);
+    const bool is_near = std::abs(elevation - *nearest) <= tolerance * gap;
+    return is_near ? static_cast<int>(nearest - elevations.begin()) : LineGrouping::kNoLine;
+  });
+  grouping.list(static_cast<int>(elevations.size()), lines);
+  return grouping.measurable() == 0
+             ? 0.0F
+             : static_cast<float>(grouping.onLines()) / static_cast<float>(grouping.measurable());
 }
 
 /// Number of points per elevation bin.
@@ -82,19 +81,19 @@ std::vector<float> clusterCenters(const std::vector<int>& histogram, int min_cou
 
 }  // namespace
 
-bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines)
+bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines)
 {
   if (!sensor.isKnown()) {
     return false;
   }
   // Half a gap: every point between two beams belongs to one of them; beyond the outermost beams nothing does.
-  const float assigned = groupByElevation(cloud, sensor.elevations, 0.5F, lines);
-  ensureSweepOrder(cloud, lines);
+  const float assigned = groupByElevation(cloud, sensor.elevations, 0.5F, threads, lines);
+  ensureSweepOrder(cloud, lines, threads);
   lines.confidence *= assigned;
   return assigned > 0.5F;
 }
 
-bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
 {
   const std::vector<int> histogram = elevationHistogram(cloud);
   // A line has at least some thousandths of the points; between lines there are next to none.
@@ -105,13 +104,13 @@ bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sen
   if (centers.size() < kMinClusters || centers.size() > kMaxClusters) {
     return false;
   }
-  const float assigned = groupByElevation(cloud, centers, 0.35F, lines);
+  const float assigned = groupByElevation(cloud, centers, 0.35F, threads, lines);
   // Surfaces without lines fill the elevations evenly: a third of the gap then holds two thirds of the points.
   constexpr float kClusteredFraction = 0.9F;
   if (assigned < kClusteredFraction) {
     return false;
   }
-  ensureSweepOrder(cloud, lines);
+  ensureSweepOrder(cloud, lines, threads);
   lines.confidence *= assigned;
   return true;
 }

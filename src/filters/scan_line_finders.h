@@ -1,5 +1,6 @@
 /// \file scan_line_finders.h
-/// The ways to find scan lines; each returns false if the cloud does not support it.
+/// The ways to find scan lines; each returns false if the cloud does not support it. None depends on
+/// the number of threads.
 #pragma once
 
 #include <pcl_floam/filters/scan_lines.h>
@@ -21,19 +22,14 @@ inline bool isMeasurable(const CloudView& cloud, std::size_t i)
 /// A sensor has no more scan lines than this.
 constexpr int kMaxScanLines = 1024;
 
-bool linesFromRingField(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
-bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
-bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
-bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
-bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, ScanLines& lines);
-
-/// Sorts the measurable points by their line, keeping the cloud's order within a line.
-/// \param line_of_point one per point of the cloud; negative for points on no line
-void groupByLine(const CloudView& cloud, const std::vector<std::int32_t>& line_of_point, int line_count,
-                 ScanLines& lines);
+bool linesFromRingField(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
+bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
+bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
 
 /// Sorts each line by azimuth if the cloud's own order is not that of a sweep; sets the confidence to the
 /// fraction of steps in the prevailing direction.
-void ensureSweepOrder(const CloudView& cloud, ScanLines& lines);
+void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads);
 
 }  // namespace pcl_floam

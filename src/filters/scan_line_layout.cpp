@@ -2,6 +2,7 @@
 #include "common/field_type.h"
 #include "common/multi_version.h"
 #include "filters/azimuth.h"
+#include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
@@ -63,14 +64,6 @@ void computeAzimuths(std::size_t count, const float* x, const float* y, float* a
   }
 }
 
-/// From azimuth 0 at the front to 0 at the rear.
-void turnByHalf(PointRun& run)
-{
-  for (std::size_t n = 0; n < run.count; ++n) {
-    run.azimuth[n] += run.azimuth[n] < 2.0F ? 2.0F : -2.0F;
-  }
-}
-
 /// Steps of azimuth that go up, go down, and jump back to where a line begins.
 struct StepCounts {
   std::int32_t rising = 0;
@@ -78,50 +71,82 @@ struct StepCounts {
   std::int32_t jumps = 0;
 };
 
+constexpr float kTurn = 4.0F;
 constexpr float kJump = 2.4F;  // 0.6 of a turn: lines may begin late and end early
 
-PCL_FLOAM_MULTI_VERSION
-StepCounts countSteps(std::size_t count, const float* azimuth)
+/// A step as seen with azimuth 0 at the rear instead of at the front.
+inline float stepFromRear(float before, float after)
 {
-  StepCounts counts;
-  for (std::size_t n = 1; n < count; ++n) {
-    const float step = azimuth[n] - azimuth[n - 1];
-    counts.rising += static_cast<std::int32_t>(step > 0.0F) & static_cast<std::int32_t>(step <= kJump);
-    counts.falling += static_cast<std::int32_t>(step < 0.0F) & static_cast<std::int32_t>(step >= -kJump);
-    counts.jumps += static_cast<std::int32_t>(std::abs(step) > kJump);
+  const bool crosses = (before < 0.5F * kTurn) != (after < 0.5F * kTurn);
+  return after - before + (crosses ? (before < after ? -kTurn : kTurn) : 0.0F);
+}
+
+inline void count(float step, StepCounts& counts)
+{
+  counts.rising += static_cast<std::int32_t>(step > 0.0F) & static_cast<std::int32_t>(step <= kJump);
+  counts.falling += static_cast<std::int32_t>(step < 0.0F) & static_cast<std::int32_t>(step >= -kJump);
+  counts.jumps += static_cast<std::int32_t>(std::abs(step) > kJump);
+}
+
+PCL_FLOAM_MULTI_VERSION
+void countSteps(std::size_t points, const float* azimuth, StepCounts& front, StepCounts& rear)
+{
+  StepCounts from_front;
+  StepCounts from_rear;
+  for (std::size_t n = 1; n < points; ++n) {
+    count(azimuth[n] - azimuth[n - 1], from_front);
+    count(stepFromRear(azimuth[n - 1], azimuth[n]), from_rear);
   }
-  return counts;
+  front = from_front;
+  rear = from_rear;
 }
 
 /// The scan lines that result if the cloud's order is cut wherever azimuth jumps back by most of a turn.
 struct OrderCut {
-  std::vector<std::int32_t> begin{0};
+  std::vector<std::int32_t> begin;  ///< of the lines but the first
   std::size_t rising = 0;
   std::size_t falling = 0;
   std::size_t jumps_up = 0;
   std::size_t jumps_down = 0;
-  double tilt = 0.0;  ///< sum of the changes of elevation at the jumps
 
   /// Adds the steps within a run; the next run begins with this one's last point.
-  void advance(const CloudView& cloud, const ScanLines& lines, const PointRun& run)
+  template <typename StepOf>
+  void advance(const PointRun& run, const StepCounts& counts, const StepOf& stepOf)
   {
-    const StepCounts counts = countSteps(run.count, run.azimuth.data());
     rising += static_cast<std::size_t>(counts.rising);
     falling += static_cast<std::size_t>(counts.falling);
     for (std::size_t n = 1; n < run.count && counts.jumps > 0; ++n) {
-      const float step = run.azimuth[n] - run.azimuth[n - 1];
+      const float step = stepOf(run.azimuth[n - 1], run.azimuth[n]);
       if (std::abs(step) > kJump) {
         (step > 0.0F ? jumps_up : jumps_down)++;
-        const std::size_t place = run.place + n;
-        begin.push_back(static_cast<std::int32_t>(place));
-        tilt += std::abs(elevationOf(cloud, static_cast<std::size_t>(lines.index[place])) -
-                         elevationOf(cloud, static_cast<std::size_t>(lines.index[place - 1])));
+        begin.push_back(static_cast<std::int32_t>(run.place + n));
       }
     }
   }
 
+  /// Adds the steps of the cloud's next part.
+  void append(const OrderCut& next)
+  {
+    begin.insert(begin.end(), next.begin.begin(), next.begin.end());
+    rising += next.rising;
+    falling += next.falling;
+    jumps_up += next.jumps_up;
+    jumps_down += next.jumps_down;
+  }
+
   [[nodiscard]] bool rises() const { return rising >= falling; }
-  [[nodiscard]] double meanTilt() const { return tilt / static_cast<double>(begin.size()); }
+
+  /// Mean change of elevation from one line to the next.
+  [[nodiscard]] double meanTilt(const CloudView& cloud, const ScanLines& lines) const
+  {
+    double tilt = 0.0;
+    for (const std::int32_t place : begin) {
+      const auto n = static_cast<std::size_t>(place);
+      tilt += std::abs(elevationOf(cloud, static_cast<std::size_t>(lines.index[n])) -
+                       elevationOf(cloud, static_cast<std::size_t>(lines.index[n - 1])));
+    }
+    return tilt / static_cast<double>(begin.size() + 1);
+  }
 
   /// Fraction of the steps that go in the prevailing direction.
   [[nodiscard]] float confidence() const
@@ -134,7 +159,7 @@ struct OrderCut {
   [[nodiscard]] bool isPlausible() const
   {
     constexpr float kFileOrderConfidence = 0.95F;  // other orders of points give about one half
-    return confidence() >= kFileOrderConfidence && begin.size() >= 4 && begin.size() <= kMaxScanLines;
+    return confidence() >= kFileOrderConfidence && begin.size() + 1 >= 4 && begin.size() + 1 <= kMaxScanLines;
   }
 };
 
@@ -165,34 +190,15 @@ void readRun(const CloudView& cloud, const std::vector<std::int32_t>& index, std
 
 }  // namespace
 
-void groupByLine(const CloudView& cloud, const std::vector<std::int32_t>& line_of_point, int line_count,
-                 ScanLines& lines)
-{
-  lines.begin.assign(static_cast<std::size_t>(line_count) + 1, 0);
-  for (const std::int32_t line : line_of_point) {
-    if (line >= 0) {
-      ++lines.begin[static_cast<std::size_t>(line) + 1];
-    }
-  }
-  for (std::size_t m = 1; m < lines.begin.size(); ++m) {
-    lines.begin[m] += lines.begin[m - 1];
-  }
-  lines.index.resize(static_cast<std::size_t>(lines.begin.back()));
-  std::vector<std::int32_t> next(lines.begin.begin(), lines.begin.end() - 1);
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (line_of_point[i] >= 0) {
-      lines.index[static_cast<std::size_t>(next[static_cast<std::size_t>(line_of_point[i])]++)] =
-          static_cast<std::int32_t>(i);
-    }
-  }
-}
-
-void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
+void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
 {
   constexpr std::int32_t kSampled = 5;  // one step in so many tells as much as all; odd, since drivers' habits are even
+  const auto line_count = static_cast<std::ptrdiff_t>(lines.lines());
   std::size_t rising = 0;
   std::size_t falling = 0;
-  for (std::size_t m = 0; m < lines.lines(); ++m) {
+#pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : rising, falling)
+  for (std::ptrdiff_t line = 0; line < line_count; ++line) {
+    const auto m = static_cast<std::size_t>(line);
     for (std::int32_t n = lines.begin[m] + 1; n < lines.begin[m + 1]; n += kSampled) {
       const auto a = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n) - 1]);
       const auto b = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
@@ -207,7 +213,9 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
     return;
   }
   lines.sorted_by_azimuth = true;
-  for (std::size_t m = 0; m < lines.lines(); ++m) {
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::ptrdiff_t line = 0; line < line_count; ++line) {
+    const auto m = static_cast<std::size_t>(line);
     std::sort(lines.index.begin() + lines.begin[m], lines.index.begin() + lines.begin[m + 1],
               [&cloud](std::int32_t a, std::int32_t b) {
                 const float azimuth_a =
@@ -219,39 +227,32 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines)
   }
 }
 
-bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
 {
   if (!cloud.ring.exists()) {
     return false;
   }
-  std::vector<std::int32_t> line_of_point(cloud.size, -1);
-  int line_count = 0;
-  std::size_t measurable = 0;
+  LineGrouping grouping(cloud.size, threads);
   withReader(cloud.ring, [&](const auto& ring_of) {
-    for (std::size_t i = 0; i < cloud.size; ++i) {
+    grouping.assign([&](std::size_t i) {
       if (!isMeasurable(cloud, i)) {
-        continue;
+        return LineGrouping::kNotMeasurable;
       }
-      ++measurable;
       const double ring = ring_of(cloud.point(i));
-      if (ring >= 0.0 && ring < kMaxScanLines && ring == static_cast<std::int32_t>(ring)) {
-        line_of_point[i] = static_cast<std::int32_t>(ring);
-        line_count = std::max(line_count, line_of_point[i] + 1);
-      }
-    }
+      const bool is_line = ring >= 0.0 && ring < kMaxScanLines && ring == static_cast<std::int32_t>(ring);
+      return is_line ? static_cast<int>(ring) : LineGrouping::kNoLine;
+    });
   });
-  groupByLine(cloud, line_of_point, line_count, lines);
   // A ring field that the driver left at zero, or that holds something else, is no ring field.
-  const auto used = std::count_if(lines.begin.begin(), lines.begin.end() - 1,
-                                  [&](const std::int32_t& first) { return first < *(&first + 1); });
-  if (used < kMinScanLines || lines.index.size() * 2 < measurable) {
+  if (grouping.used() < kMinScanLines || grouping.onLines() * 2 < grouping.measurable()) {
     return false;
   }
-  ensureSweepOrder(cloud, lines);
+  grouping.list(grouping.end(), lines);
+  ensureSweepOrder(cloud, lines, threads);
   return true;
 }
 
-bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
 {
   if (cloud.height < kMinScanLines || cloud.width < kMinScanLines ||
       static_cast<std::size_t>(cloud.width) * cloud.height != cloud.size) {
@@ -264,38 +265,59 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
   if (line_count > kMaxScanLines) {
     return false;
   }
-  std::vector<std::int32_t> line_of_point(cloud.size, -1);
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (isMeasurable(cloud, i)) {
-      line_of_point[i] = static_cast<std::int32_t>(lines.transposed ? i % cloud.width : i / cloud.width);
+  LineGrouping grouping(cloud.size, threads);
+  grouping.assign([&](std::size_t i) {
+    if (!isMeasurable(cloud, i)) {
+      return LineGrouping::kNotMeasurable;
     }
-  }
-  groupByLine(cloud, line_of_point, static_cast<int>(line_count), lines);
-  ensureSweepOrder(cloud, lines);
+    return static_cast<int>(lines.transposed ? i % cloud.width : i / cloud.width);
+  });
+  grouping.list(static_cast<int>(line_count), lines);
+  ensureSweepOrder(cloud, lines, threads);
   // Depth images are organised too, but their rows do not run around the sensor in one direction unless seen so;
   // either way neighbours in a row are neighbours on the surface, which is all that is needed.
   return true;
 }
 
-bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, ScanLines& lines)
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
 {
   listMeasurable(cloud, lines.index);
-  OrderCut front;
-  OrderCut rear;
-  PointRun run;
-  for (std::size_t place = 0; place + 1 < lines.index.size(); place += PointRun::kMost - 1) {
-    readRun(cloud, lines.index, place, run);
-    front.advance(cloud, lines, run);
-    turnByHalf(run);
-    rear.advance(cloud, lines, run);
+  struct Cuts {
+    OrderCut front;
+    OrderCut rear;
+  };
+  constexpr std::size_t kStep = PointRun::kMost - 1;
+  const std::size_t runs = (lines.index.size() + kStep - 1) / kStep;
+  const auto parts = static_cast<std::size_t>(threads);
+  std::vector<Cuts> cuts(parts);
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+  for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
+    const auto part = static_cast<std::size_t>(p);
+    PointRun run;
+    StepCounts front;
+    StepCounts rear;
+    for (std::size_t r = runs * part / parts; r < runs * (part + 1) / parts; ++r) {
+      readRun(cloud, lines.index, r * kStep, run);
+      countSteps(run.count, run.azimuth.data(), front, rear);
+      cuts[part].front.advance(run, front, [](float before, float after) { return after - before; });
+      cuts[part].rear.advance(run, rear, stepFromRear);
+    }
   }
+  for (std::size_t part = 1; part < parts; ++part) {
+    cuts.front().front.append(cuts[part].front);
+    cuts.front().rear.append(cuts[part].rear);
+  }
+  const OrderCut& front = cuts.front().front;
+  const OrderCut& rear = cuts.front().rear;
   // Turned by half a turn, the order looks as good; but only where lines really end does the elevation change.
-  const bool is_rear = rear.isPlausible() && !(front.isPlausible() && front.meanTilt() >= rear.meanTilt());
-  OrderCut& cut = is_rear ? rear : front;
+  const bool is_rear =
+      rear.isPlausible() && !(front.isPlausible() && front.meanTilt(cloud, lines) >= rear.meanTilt(cloud, lines));
+  const OrderCut& cut = is_rear ? rear : front;
   if (!cut.isPlausible()) {
     return false;
   }
-  lines.begin = std::move(cut.begin);
+  lines.begin.assign(1, 0);
+  lines.begin.insert(lines.begin.end(), cut.begin.begin(), cut.begin.end());
   lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
   lines.confidence = cut.confidence();
   lines.kitti_order = !is_rear && cut.rises();

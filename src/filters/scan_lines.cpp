@@ -33,7 +33,7 @@ const char* toString(ScanLineFailure failure)
 
 namespace {
 
-using Finder = bool (*)(const CloudView&, const SensorModel&, ScanLines&);
+using Finder = bool (*)(const CloudView&, const SensorModel&, int, ScanLines&);
 
 struct NamedFinder {
   ScanLineSource source;
@@ -61,7 +61,8 @@ bool hasMeasurablePoint(const CloudView& cloud)
 
 }  // namespace
 
-void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines)
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
+                   int threads)
 {
   const auto start_over = [&lines] {
     lines.index.clear();
@@ -80,7 +81,7 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     if (source != ScanLineSource::automatic && source != finder.source) {
       continue;
     }
-    if (finder.find(cloud, sensor, lines)) {
+    if (finder.find(cloud, sensor, std::max(threads, 1), lines)) {
       lines.source = finder.source;
       return;
     }

@@ -39,7 +39,7 @@ double timeUnit(double span, FieldView::Type type)
   return real ? 1.0 : 1e-9;
 }
 
-bool timingFromField(const CloudView& cloud, ScanTiming& timing)
+bool timingFromField(const CloudView& cloud, int threads, ScanTiming& timing)
 {
   if (!cloud.time.exists()) {
     return false;
@@ -47,7 +47,9 @@ bool timingFromField(const CloudView& cloud, ScanTiming& timing)
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   withReader(cloud.time, [&](const auto& time_of) {
-    for (std::size_t i = 0; i < cloud.size; ++i) {
+#pragma omp parallel for num_threads(threads) schedule(static) reduction(min : first) reduction(max : last)
+    for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(cloud.size); ++n) {
+      const auto i = static_cast<std::size_t>(n);
       const double t = time_of(cloud.point(i));
       if ((t < first || t > last) && std::isfinite(t) && isMeasurable(cloud, i)) {
         first = std::min(first, t);
@@ -173,11 +175,11 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
 }
 
 ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,
-                          ScanRotation rotation)
+                          ScanRotation rotation, int threads)
 {
   ScanTiming timing;
   const bool any = source == ScanTimingSource::automatic;
-  if ((any || source == ScanTimingSource::time_field) && timingFromField(cloud, timing)) {
+  if ((any || source == ScanTimingSource::time_field) && timingFromField(cloud, std::max(threads, 1), timing)) {
     return timing;
   }
   if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {

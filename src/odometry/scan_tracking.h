@@ -104,8 +104,8 @@ struct OdometryPipeline::Impl {
   // Sensor Model and Feature Extraction
   void extractFeatures(const CloudView& scan)
   {
-    findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines);
-    timing = findScanTiming(scan, lines, parameters.timing_source, parameters.rotation);
+    findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+    timing = findScanTiming(scan, lines, parameters.timing_source, parameters.rotation, parameters.threads);
     double sweep_fraction = 1.0;
     if (timing.duration > 0.0 && clock.period() > 0.0) {
       sweep_fraction = std::min(1.0, timing.duration / clock.period());

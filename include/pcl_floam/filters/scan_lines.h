@@ -58,6 +58,8 @@ struct ScanLines {
 ///               `elevation_clusters` when the sensor is named
 /// \param source `automatic`, or the one source to use
 /// \param[out] lines overwritten; its memory is reused. On failure it has no lines and says why.
-void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines);
+/// \param threads >= 1; the lines do not depend on it
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
+                   int threads = 1);
 
 }  // namespace pcl_floam

@@ -53,9 +53,10 @@ struct ScanTiming {
 /// \param lines    its scan lines; their order shows the direction of rotation
 /// \param source   `automatic`, or the one source to use
 /// \param rotation `automatic` to measure it, else the given one; used by source `azimuth` only
+/// \param threads  >= 1; the timing does not depend on it
 /// \return a timing whose `source` is `none` when no time can be told
 [[nodiscard]] ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines,
                                         ScanTimingSource source = ScanTimingSource::automatic,
-                                        ScanRotation rotation = ScanRotation::automatic);
+                                        ScanRotation rotation = ScanRotation::automatic, int threads = 1);
 
 }  // namespace pcl_floam

@@ -1,0 +1,123 @@
+/// \file line_grouping.h
+/// The points of a cloud, sorted by their scan line.
+#pragma once
+
+#include "filters/scan_line_finders.h"
+
+#include <pcl_floam/filters/scan_lines.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Asks for each point's line, then lists the points line by line, keeping the cloud's order within a line. Each thread
+/// takes points that follow each other: the result does not depend on how many there are.
+class LineGrouping {
+public:
+  static constexpr int kNotMeasurable = -2;
+  static constexpr int kNoLine = -1;  ///< measurable, but on none
+
+  /// \param threads >= 1
+  LineGrouping(std::size_t points, int threads)
+      : line_of_point_(points),
+        counts_(static_cast<std::size_t>(threads), std::vector<std::int32_t>(kMaxScanLines + kBefore, 0))
+  {
+  }
+
+  /// \param lineOf gives the line of point \p i in [0, kMaxScanLines), \ref kNoLine or \ref kNotMeasurable; called from
+  ///               all threads
+  template <typename LineOf>
+  void assign(const LineOf& lineOf)
+  {
+#pragma omp parallel for num_threads(static_cast <int>(counts_.size())) schedule(static, 1)
+    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(counts_.size()); ++p) {
+      const auto part = static_cast<std::size_t>(p);
+      std::vector<std::int32_t>& count = counts_[part];
+      for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
+        const int line = lineOf(i);
+        line_of_point_[i] = static_cast<std::int16_t>(line);
+        ++count[static_cast<std::size_t>(line + kBefore)];
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t measurable() const
+  {
+    return line_of_point_.size() - total(kNotMeasurable);
+  }
+  [[nodiscard]] std::size_t onLines() const
+  {
+    return measurable() - total(kNoLine);
+  }
+
+  /// Lines that have points.
+  [[nodiscard]] int used() const
+  {
+    int used = 0;
+    for (int line = 0; line < kMaxScanLines; ++line) {
+      used += total(line) > 0 ? 1 : 0;
+    }
+    return used;
+  }
+
+  /// One more than the number of the last line that has points.
+  [[nodiscard]] int end() const
+  {
+    int end = kMaxScanLines;
+    while (end > 0 && total(end - 1) == 0) {
+      --end;
+    }
+    return end;
+  }
+
+  /// \param line_count lines to list, >= \ref end
+  void list(int line_count, ScanLines& lines) const
+  {
+    lines.begin.assign(static_cast<std::size_t>(line_count) + 1, 0);
+    std::vector<std::vector<std::int32_t>> next(counts_.size(), lines.begin);
+    std::int32_t listed = 0;
+    for (std::size_t m = 0; m < static_cast<std::size_t>(line_count); ++m) {
+      lines.begin[m] = listed;
+      for (std::size_t part = 0; part < counts_.size(); ++part) {
+        next[part][m] = listed;
+        listed += counts_[part][m + kBefore];
+      }
+    }
+    lines.begin.back() = listed;
+    lines.index.resize(static_cast<std::size_t>(listed));
+#pragma omp parallel for num_threads(static_cast <int>(counts_.size())) schedule(static, 1)
+    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(counts_.size()); ++p) {
+      const auto part = static_cast<std::size_t>(p);
+      for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
+        if (line_of_point_[i] >= 0) {
+          std::int32_t& place = next[part][static_cast<std::size_t>(line_of_point_[i])];
+          lines.index[static_cast<std::size_t>(place++)] = static_cast<std::int32_t>(i);
+        }
+      }
+    }
+  }
+
+private:
+  static constexpr int kBefore = 2;  ///< places of the counts before line 0: kNotMeasurable and kNoLine
+
+  [[nodiscard]] std::size_t firstOf(std::size_t part) const
+  {
+    return line_of_point_.size() * part / counts_.size();
+  }
+
+  [[nodiscard]] std::size_t total(int line) const
+  {
+    return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0},
+                           [line](std::size_t sum, const std::vector<std::int32_t>& count) {
+                             return sum + static_cast<std::size_t>(count[static_cast<std::size_t>(line + kBefore)]);
+                           });
+  }
+
+  std::vector<std::int16_t> line_of_point_;
+  std::vector<std::vector<std::int32_t>> counts_;  ///< of each part
+};
+
+}  // namespace pcl_floam
