@@ -1,5 +1,7 @@
 #include <pcl_floam/filters/sensor_model.h>
 
+#include "filters/scan_line_finders.h"
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -93,8 +95,8 @@ std::vector<std::string> sensorNames()
 
 SensorModel customSensor(std::string name, const std::vector<float>& elevations_degrees)
 {
-  if (elevations_degrees.size() < 2) {
-    throw std::invalid_argument("sensor '" + name + "' needs at least 2 beams");
+  if (elevations_degrees.size() < 2 || elevations_degrees.size() > kMaxScanLines) {
+    throw std::invalid_argument("sensor '" + name + "' needs 2 to " + std::to_string(kMaxScanLines) + " beams");
   }
   SensorModel model{std::move(name), {}};
   for (const float degrees : elevations_degrees) {

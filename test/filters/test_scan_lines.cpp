@@ -70,10 +70,10 @@ SensorModel sensorOf(const Lidar& lidar)
 }
 
 ScanLines find(const CloudView& cloud, ScanLineSource source = ScanLineSource::automatic,
-               const SensorModel& sensor = {})
+               const SensorModel& sensor = {}, int threads = 1)
 {
   ScanLines lines;
-  findScanLines(cloud, sensor, source, lines);
+  findScanLines(cloud, sensor, source, lines, threads);
   return lines;
 }
 
@@ -272,6 +272,49 @@ TEST(ScanLines, FailuresHaveReasons)
                                       ScanLineSource::file_order, ScanLineSource::elevation_table}) {
     EXPECT_EQ(find(viewOf(cloud), source).failure, ScanLineFailure::source_not_available) << toString(source);
   }
+}
+
+/// Of every layout, also where there are more threads than points or lines.
+TEST(ScanLines, AllThreadsFindTheSame)
+{
+  auto rows = toPositions(rowOrder());
+  rows.width = 360;
+  rows.height = 16;
+  const auto few = firingOrder();
+  const auto with_rings = toCloud(firingOrder());
+  const auto rings_shuffled = toCloud(shuffled());
+  const auto few_with_rings = toCloud({few.begin(), few.begin() + 20});
+  const auto kitti = toPositions(kittiOrder());
+  const auto from_the_rear = toPositions(rowOrder());
+  const auto fired = toPositions(firingOrder());
+  const auto no_order = toPositions(shuffled());
+  const SensorModel sensor = sensorOf(smallLidar());
+  for (const CloudView& cloud : {viewOf(with_rings), viewOf(rings_shuffled), viewOf(few_with_rings), viewOf(rows),
+                                 viewOf(kitti), viewOf(from_the_rear), viewOf(fired), viewOf(no_order)}) {
+    for (const SensorModel& model : {SensorModel(), sensor}) {
+      const ScanLines one = find(cloud, ScanLineSource::automatic, model);
+      EXPECT_TRUE(one.valid());
+      for (const int threads : {2, 3, 7, 30}) {
+        const ScanLines lines = find(cloud, ScanLineSource::automatic, model, threads);
+        EXPECT_EQ(lines.index, one.index) << toString(one.source);
+        EXPECT_EQ(lines.begin, one.begin) << toString(one.source);
+        EXPECT_EQ(lines.confidence, one.confidence) << toString(one.source);
+        EXPECT_EQ(lines.source, one.source);
+        EXPECT_EQ(lines.kitti_order, one.kitti_order);
+      }
+    }
+  }
+}
+
+TEST(ScanLines, ASensorHasNotEndlesslyManyBeams)
+{
+  SensorModel sensor;
+  sensor.name = "many";
+  for (int beam = 0; beam < 2000; ++beam) {
+    sensor.elevations.push_back(0.0005F * static_cast<float>(beam));
+  }
+  EXPECT_FALSE(find(viewOf(toPositions(firingOrder())), ScanLineSource::elevation_table, sensor).valid());
+  EXPECT_THROW(static_cast<void>(customSensor("many", std::vector<float>(1025, 1.0F))), std::invalid_argument);
 }
 
 TEST(ScanLines, AFewScatteredElevationsAreNoClusters)

@@ -26,7 +26,7 @@ struct SensorModel {
 
 /// A sensor of the user's own.
 /// \param elevations_degrees one per beam, in any order
-/// \throws std::invalid_argument if it has fewer than 2 beams or one is not within [-90, 90].
+/// \throws std::invalid_argument if it has fewer than 2 or more than 1024 beams, or one is not within [-90, 90].
 [[nodiscard]] SensorModel customSensor(std::string name, const std::vector<float>& elevations_degrees);
 
 }  // namespace pcl_floam
