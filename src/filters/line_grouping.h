@@ -32,8 +32,9 @@ public:
   template <typename LineOf>
   void assign(const LineOf& lineOf)
   {
-#pragma omp parallel for num_threads(static_cast <int>(counts_.size())) schedule(static, 1)
-    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(counts_.size()); ++p) {
+    const auto parts = static_cast<int>(counts_.size());
+#pragma omp parallel for num_threads(parts) schedule(static, 1)
+    for (int p = 0; p < parts; ++p) {
       const auto part = static_cast<std::size_t>(p);
       std::vector<std::int32_t>& count = counts_[part];
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
@@ -88,8 +89,9 @@ public:
     }
     lines.begin.back() = listed;
     lines.index.resize(static_cast<std::size_t>(listed));
-#pragma omp parallel for num_threads(static_cast <int>(counts_.size())) schedule(static, 1)
-    for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(counts_.size()); ++p) {
+    const auto parts = static_cast<int>(counts_.size());
+#pragma omp parallel for num_threads(parts) schedule(static, 1)
+    for (int p = 0; p < parts; ++p) {
       const auto part = static_cast<std::size_t>(p);
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
         if (line_of_point_[i] >= 0) {

@@ -83,7 +83,7 @@ std::vector<float> clusterCenters(const std::vector<int>& histogram, int min_cou
 
 bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines)
 {
-  if (!sensor.isKnown() || sensor.elevations.size() > kMaxScanLines) {
+  if (sensor.elevations.size() < 2 || sensor.elevations.size() > kMaxScanLines) {
     return false;
   }
   // Half a gap: every point between two beams belongs to one of them; beyond the outermost beams nothing does.

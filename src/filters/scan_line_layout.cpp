@@ -71,14 +71,18 @@ struct StepCounts {
   std::int32_t jumps = 0;
 };
 
-constexpr float kTurn = 4.0F;
 constexpr float kJump = 2.4F;  // 0.6 of a turn: lines may begin late and end early
+
+/// From azimuth 0 at the front to 0 at the rear.
+inline float turnedByHalf(float azimuth)
+{
+  return azimuth + (azimuth < 2.0F ? 2.0F : -2.0F);
+}
 
 /// A step as seen with azimuth 0 at the rear instead of at the front.
 inline float stepFromRear(float before, float after)
 {
-  const bool crosses = (before < 0.5F * kTurn) != (after < 0.5F * kTurn);
-  return after - before + (crosses ? (before < after ? -kTurn : kTurn) : 0.0F);
+  return turnedByHalf(after) - turnedByHalf(before);
 }
 
 inline void count(float step, StepCounts& counts)
@@ -119,7 +123,9 @@ struct OrderCut {
       const float step = stepOf(run.azimuth[n - 1], run.azimuth[n]);
       if (std::abs(step) > kJump) {
         (step > 0.0F ? jumps_up : jumps_down)++;
-        begin.push_back(static_cast<std::int32_t>(run.place + n));
+        if (begin.size() <= kMaxScanLines) {  // more of them are not plausible, however many
+          begin.push_back(static_cast<std::int32_t>(run.place + n));
+        }
       }
     }
   }

@@ -93,7 +93,7 @@ void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::V
 {
   for (const Eigen::Vector3d& point : points) {
     if (point.allFinite()) {
-      impl_->layer(kind).insert(point);
+      impl_->layer(kind).insertMean(point);
     }
   }
   impl_->rebuildTrees();
@@ -105,9 +105,11 @@ void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& poi
   const double range = impl_->parameters.see_through_range;
   if (range > 0.0) {
     const RangeImage scan(points);
-    impl_->edges.weakenSeenThrough(scan, world_T_sensor, range, threads);
-    impl_->planes.weakenSeenThrough(scan, world_T_sensor, range, threads);
-    impl_->rebuildTrees();
+    const std::size_t forgotten = impl_->edges.weakenSeenThrough(scan, world_T_sensor, range, threads) +
+                                  impl_->planes.weakenSeenThrough(scan, world_T_sensor, range, threads);
+    if (forgotten > 0) {
+      impl_->rebuildTrees();
+    }
   }
 }
 

@@ -12,6 +12,9 @@ RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
     : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero())
 {
   for (const Eigen::Vector3f& point : points) {
+    if (!std::isfinite(point.squaredNorm())) {
+      continue;
+    }
     const Cell cell = cellOf(point);
     if (cell.row < 0 || cell.row >= kRows) {
       continue;
@@ -57,7 +60,7 @@ bool RangeImage::allBeyond(int column, int row, float range) const
 /// too; but the line below it does not.
 bool RangeImage::nextBeyond(const Cell& cell, int up, float range) const
 {
-  constexpr int kMostRows = 4;  // 2.6 degrees: scan lines are closer together
+  constexpr int kMostRows = 6;  // 4 degrees: next to the horizon, scan lines are closer together
   for (int row = cell.row + up; row >= 0 && row < kRows && std::abs(row - cell.row) <= kMostRows; row += up) {
     if (!allBeyond(cell.column, row, range)) {
       return false;

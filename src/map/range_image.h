@@ -12,7 +12,7 @@ namespace pcl_floam {
 /// The nearest return of a scan in each of a grid of directions, about 0.7 degrees apart.
 class RangeImage {
 public:
-  /// \param points of one scan, in the sensor's frame; ones that are not finite are left out
+  /// \param points of one scan, in the sensor's frame, m; ones that are not finite are left out
   explicit RangeImage(const std::vector<Eigen::Vector3f>& points);
 
   /// True if a beam went through this place, in the sensor's frame, and on for clearly farther, and so did all beams

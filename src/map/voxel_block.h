@@ -46,8 +46,12 @@ public:
 
   void prefetchPoints() const { prefetch(groups_.data(), std::min<std::size_t>(groups_.size(), 8) * sizeof(Group)); }
 
+  /// A mean takes in no more points than this: later ones keep moving it, so that it can follow the world.
+  static constexpr float kMaxAveraged = 20.0F;
+
   /// Averages a point into its voxel. \return true if the voxel was empty
-  bool add(std::uint32_t voxel, const Eigen::Vector3f& offset)
+  /// \param weight points that it stands for, if the voxel was
+  bool add(std::uint32_t voxel, const Eigen::Vector3f& offset, float weight = 1.0F)
   {
     for (std::size_t i = 0; i < voxels_.size(); ++i) {
       if (voxels_[i].number == voxel) {
@@ -58,7 +62,7 @@ public:
     if (voxels_.size() % kLanes == 0) {
       groups_.emplace_back();
     }
-    voxels_.push_back({voxel, 1.0F});
+    voxels_.push_back({voxel, weight});
     set(voxels_.size() - 1, offset);
     return true;
   }
@@ -140,8 +144,6 @@ private:
 
   void average(std::size_t i, const Eigen::Vector3f& offset)
   {
-    // A mean takes in no more points than this: later ones keep moving it, so that it can follow the world.
-    constexpr float kMaxAveraged = 20.0F;
     voxels_[i].count = std::min(voxels_[i].count + 1.0F, kMaxAveraged);
     set(i, point(i) + (offset - point(i)) / voxels_[i].count);
   }

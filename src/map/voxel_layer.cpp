@@ -159,6 +159,15 @@ void VoxelLayer::insert(const Eigen::Vector3d& point)
   insertEach(&point, 1);
 }
 
+void VoxelLayer::insertMean(const Eigen::Vector3d& point)
+{
+  if (isRepresentable(point)) {
+    const BlockQuery place = blockQuery(point);
+    VoxelBlock& block = blocks_[static_cast<std::size_t>(findOrAddBlock(place.key))];
+    size_ += block.add(voxelAt(place.offset), place.offset, VoxelBlock::kMaxAveraged) ? 1 : 0;
+  }
+}
+
 void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count, int threads)
 {
   if (threads > 1) {
@@ -258,18 +267,19 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
   }
 }
 
-void VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads)
+std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads)
 {
   // A voxel that was hit often, as that of a car that was parked for a while, takes more than one such scan.
   constexpr float kWeight = 10.0F;
   const SE3 sensor_T_world = world_T_sensor.inverse();
   const Eigen::Matrix3f rotation = sensor_T_world.rotation.cast<float>();
   std::size_t forgotten = 0;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 64) reduction(+ : forgotten)
+#pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 64) reduction(+ : forgotten)
   for (std::ptrdiff_t b = 0; b < static_cast<std::ptrdiff_t>(blocks_.size()); ++b) {
     VoxelBlock& block = blocks_[static_cast<std::size_t>(b)];
     const Eigen::Vector3d corner = block_size_ * Eigen::Vector3d(block.key.x, block.key.y, block.key.z);
-    if ((corner - world_T_sensor.translation).squaredNorm() > radius * radius) {
+    const Eigen::Vector3d middle = corner.array() + 0.5 * block_size_;
+    if ((middle - world_T_sensor.translation).squaredNorm() > radius * radius) {
       continue;
     }
     const Eigen::Vector3f corner_in_sensor = (sensor_T_world * corner).cast<float>();
@@ -280,6 +290,7 @@ void VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_se
     }
   }
   size_ -= forgotten;
+  return forgotten;
 }
 
 void VoxelLayer::clear()

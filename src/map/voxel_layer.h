@@ -32,12 +32,16 @@ public:
   /// \param threads >= 1; the layer does not depend on it
   void insertEach(const Eigen::Vector3d* points, std::size_t count, int threads = 1);
 
+  /// \ref insert for a point that stands for many, as those of a saved map do.
+  void insertMean(const Eigen::Vector3d& point);
+
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
 
   /// Takes weight from the voxels within \p radius that a scan sees through; those that have none left are forgotten.
   /// \param threads >= 1; the layer does not depend on it
-  void weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads = 1);
+  /// \return how many were
+  std::size_t weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads = 1);
 
   void clear();
 

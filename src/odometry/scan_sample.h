@@ -14,9 +14,9 @@
 
 namespace pcl_floam {
 
-/// Some hundred points of each scan line, evenly spread, as seen at the motion's reference instant.
-/// \param ranges points nearer or farther than these are left out
-/// \param vertical_correction degrees
+/// About 12000 points, as seen at the motion's reference instant: of neighbours along a scan line always the nearest,
+/// so that a pole is not lost before a wall. \param ranges points nearer or farther than these are left out \param
+/// vertical_correction degrees
 [[nodiscard]] std::vector<Eigen::Vector3f> undistortedSample(const CloudView& scan, const ScanLines& lines,
                                                              const ScanTiming& timing, const FeatureParameters& ranges,
                                                              double vertical_correction, const SweepMotion& motion);

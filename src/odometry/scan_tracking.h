@@ -207,7 +207,7 @@ struct OdometryPipeline::Impl {
   void forgetWhatHasGone(const CloudView& scan)
   {
     constexpr int kKeyframesBetween = 7;
-    if (parameters.map.see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
+    if (map.parameters().see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
       map.forgetSeenThrough(
           undistortedSample(scan, lines, timing, parameters.features, parameters.vertical_correction, motion.sweep()),
           motion.pose(), parameters.threads);

@@ -92,6 +92,31 @@ TEST(MotionCompensation, GivesBackTheStaticPointsAtEveryInstant)
   }
 }
 
+TEST(MotionCompensation, UndoesAnAcceleratedMotionToo)
+{
+  const Vector6 acceleration = (Vector6() << 0.4, 0.1, -0.05, 0.02, 0.05, -0.1).finished();
+  const SweepMotion motion(kTwist, 0.5, acceleration);
+  const auto points = staticPoints();
+  Cloud cloud = distortedCloud();
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    cloud[i].getVector3fMap() = (motion.at(fractionOfPoint(i)).inverse() * points[i]).cast<float>();
+  }
+  for (const PoseInstant instant : {PoseInstant::start, PoseInstant::middle, PoseInstant::end}) {
+    auto compensation = compensationOf(cloud, instant);
+    compensation.setAcceleration(acceleration);
+    Cloud output;
+    compensation.filter(output);
+    const SE3 sensor_T_middle = motion.at(fractionOf(instant)).inverse();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_LT((output[i].getVector3fMap().cast<double>() - sensor_T_middle * points[i]).norm(), 1e-4)
+          << toString(instant) << ", point " << i;
+    }
+  }
+  MotionCompensation<PointXYZIRT> compensation;
+  EXPECT_THROW(compensation.setAcceleration(Vector6::Constant(std::numeric_limits<double>::quiet_NaN())),
+               std::invalid_argument);
+}
+
 TEST(MotionCompensation, PointsOfTheReferenceInstantStay)
 {
   const Cloud cloud = distortedCloud();

@@ -301,6 +301,8 @@ TEST(ScanLines, AllThreadsFindTheSame)
         EXPECT_EQ(lines.confidence, one.confidence) << toString(one.source);
         EXPECT_EQ(lines.source, one.source);
         EXPECT_EQ(lines.kitti_order, one.kitti_order);
+        EXPECT_EQ(lines.transposed, one.transposed);
+        EXPECT_EQ(lines.sorted_by_azimuth, one.sorted_by_azimuth);
       }
     }
   }

@@ -82,6 +82,20 @@ TEST(ScanTiming, FromTimeFieldsOfEveryUnitAndType)
   }
 }
 
+TEST(ScanTiming, AllThreadsFindTheSame)
+{
+  const auto returns = sweepRoom(Room(), smallLidar());
+  const auto cloud = cloudWithTimes<double>(returns, "timestamp", 1.7e9, 0.1);
+  const ScanTiming one = timingOf(viewOf(cloud));
+  for (const int threads : {2, 3, 30}) {
+    const ScanTiming timing =
+        findScanTiming(viewOf(cloud), {}, ScanTimingSource::automatic, ScanRotation::automatic, threads);
+    EXPECT_EQ(timing.start, one.start);
+    EXPECT_EQ(timing.duration, one.duration);
+    EXPECT_EQ(timing.seconds_per_unit, one.seconds_per_unit);
+  }
+}
+
 TEST(ScanTiming, ATimeFieldLeftAtZeroIsNone)
 {
   const auto returns = sweepRoom(Room(), smallLidar());

@@ -41,6 +41,12 @@ public:
   void setTwist(const Vector6& twist);
   [[nodiscard]] const Vector6& getTwist() const { return twist_; }
 
+  /// The change of the motion over the sweep. The twist is then the velocity at the sweep's middle, as the odometry's
+  /// reports have both: `report.registration.sweep_twist` and `sweep_acceleration`. Default: none.
+  /// \throws std::invalid_argument if it is not finite.
+  void setAcceleration(const Vector6& acceleration);
+  [[nodiscard]] const Vector6& getAcceleration() const { return acceleration_; }
+
   /// The motion over the sweep as the sensor's pose at its end, seen from its pose at the start.
   /// \throws std::invalid_argument if it is not finite.
   template <typename Transform>
@@ -69,6 +75,7 @@ protected:
 
 private:
   Vector6 twist_ = Vector6::Zero();
+  Vector6 acceleration_ = Vector6::Zero();
   PoseInstant instant_ = PoseInstant::end;
   SensorModel sensor_;
   ScanTimingSource timing_source_ = ScanTimingSource::automatic;

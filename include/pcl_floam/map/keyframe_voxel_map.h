@@ -66,12 +66,13 @@ public:
   /// \param threads       >= 1; the map does not depend on it
   void insert(const FeatureSet& features, const SE3& world_T_sensor, int threads = 1);
 
-  /// Adds points to a layer, as they are in a saved map. World frame, m; points that are not finite are left out.
+  /// Adds points to a layer, as they are in a saved map: each stands for many, and is forgotten only once two scans have
+  /// seen through it. World frame, m; points that are not finite are left out.
   void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
 
   /// Takes weight from the voxels that a scan sees through, up to `see_through_range` from the sensor, and forgets those
   /// that have none left. A voxel that was hit once or a few times goes at once, one that was hit often after some scans.
-  /// \param points         of one scan, in the sensor's frame, undistorted; ones that are not finite are left out
+  /// \param points         of one scan, in the sensor's frame, m, undistorted; ones that are not finite are left out
   /// \param world_T_sensor finite
   /// \param threads        >= 1; the map does not depend on it
   void forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor, int threads = 1);
@@ -87,7 +88,7 @@ public:
   /// The layer's nearest-neighbour search, by the method of the parameters.
   [[nodiscard]] const NeighborSearch& search(FeatureKind kind) const;
 
-  /// All points of a layer in the world frame, in m, in an order that depends on the insertions alone.
+  /// All points of a layer in the world frame, in m, in an order that depends on what was inserted and forgotten alone.
   [[nodiscard]] std::vector<Eigen::Vector3d> points(FeatureKind kind) const;
 
   /// As \ref points, as a cloud that PCL can save, show and filter. Single precision.

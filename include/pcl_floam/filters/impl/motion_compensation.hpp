@@ -20,6 +20,15 @@ void MotionCompensation<PointT>::setTwist(const Vector6& twist)
 }
 
 template <typename PointT>
+void MotionCompensation<PointT>::setAcceleration(const Vector6& acceleration)
+{
+  if (!acceleration.allFinite()) {
+    throw std::invalid_argument("motion compensation: the acceleration over the sweep is not finite");
+  }
+  acceleration_ = acceleration;
+}
+
+template <typename PointT>
 void MotionCompensation<PointT>::applyFilter(PointCloud& output)
 {
   const CloudView cloud = viewOf(*this->input_);
@@ -35,7 +44,9 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
   } else {
     pcl::copyPointCloud(*this->input_, *this->indices_, output);
   }
-  const SweepMotion motion(twist_, fractionOf(instant_));
+  // Without an acceleration, the velocity of the sweep's middle is that of all instants.
+  const SweepMotion motion(twist_, fractionOf(PoseInstant::middle), acceleration_);
+  const SE3 reference_T_middle = motion.at(fractionOf(instant_)).inverse();
   if (!timing_.valid() || motion.isStill()) {
     return;
   }
@@ -45,7 +56,7 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
       continue;
     }
     const std::size_t source = this->fake_indices_ ? i : static_cast<std::size_t>((*this->indices_)[i]);
-    const SE3 reference_T_sensor = motion.at(timing_.at(cloud, source));
+    const SE3 reference_T_sensor = reference_T_middle * motion.at(timing_.at(cloud, source));
     point.getVector3fMap() =
         (reference_T_sensor * point.getVector3fMap().template cast<double>()).template cast<float>();
     if constexpr (pcl::traits::has_normal_v<PointT>) {
