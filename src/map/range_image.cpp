@@ -9,7 +9,8 @@
 namespace pcl_floam {
 
 RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
-    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero())
+    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero()),
+      farthest_(nearest_.size() / kPatch / kPatch, 0.0F)
 {
   for (const Eigen::Vector3f& point : points) {
     if (!std::isfinite(point.squaredNorm())) {
@@ -19,10 +20,12 @@ RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
     if (cell.row < 0 || cell.row >= kRows) {
       continue;
     }
-    Eigen::Vector3f& nearest = nearest_[static_cast<std::size_t>(cell.row * kColumns + cell.column)];
+    Eigen::Vector3f& nearest = nearest_[placeOf(cell.column, cell.row, kColumns)];
     if (nearest.isZero(0.0F) || point.squaredNorm() < nearest.squaredNorm()) {
       nearest = point;
     }
+    float& farthest = farthest_[placeOf(cell.column / kPatch, cell.row / kPatch, kColumns / kPatch)];
+    farthest = std::max(farthest, point.norm());
   }
 }
 
@@ -42,6 +45,38 @@ float RangeImage::clearlyBeyond(float range)
   constexpr float kFarther = 1.15F;
   constexpr float kClearlyFarther = 0.5F;  // m
   return kFarther * range + kClearlyFarther;
+}
+
+bool RangeImage::maySeeThrough(const Eigen::Vector3f& center, float radius) const
+{
+  constexpr float kPatchColumnsPerUnit = kColumns / 4.0F / kPatch;
+  constexpr float kPatchRowsPerUnit = kRows / (2.0F * kSteepest) / kPatch;
+  constexpr int kPatchColumns = kColumns / kPatch;
+  const float across = std::sqrt(center.x() * center.x() + center.y() * center.y());
+  if (across < 4.0F * radius) {  // it fills much of the view
+    return true;
+  }
+  // The pseudo-azimuth changes by no more than the azimuth does.
+  const float half_width = radius / (across - radius);
+  const float slope = center.z() / across;
+  const float column = pseudoAzimuth(center.x(), center.y()) * kPatchColumnsPerUnit;
+  const float row = (slope + kSteepest) * kPatchRowsPerUnit;
+  const float columns = half_width * kPatchColumnsPerUnit;
+  const float rows = half_width * (1.0F + std::abs(slope)) * kPatchRowsPerUnit;
+  const int first_row = std::max(static_cast<int>(std::floor(row - rows)), 0);
+  const int last_row = std::min(static_cast<int>(std::floor(row + rows)), kRows / kPatch - 1);
+  const int first_column = static_cast<int>(std::floor(column - columns));
+  const int last_column = static_cast<int>(std::floor(column + columns));
+  const float far = clearlyBeyond(center.norm() - radius);
+  for (int r = first_row; r <= last_row; ++r) {
+    for (int c = first_column; c <= last_column; ++c) {
+      const int wrapped = (c + kPatchColumns) % kPatchColumns;
+      if (farthest_[placeOf(wrapped, r, kPatchColumns)] >= far) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 /// True if no return of the row, near the column, is nearer than \p range.

@@ -19,27 +19,36 @@ public:
   /// around it. What no beam met, above all the directions without returns, is not seen through.
   [[nodiscard]] bool seesThrough(const Eigen::Vector3f& place) const;
 
+  /// False only if no place within \p radius of this one is seen through: told at once for a whole block of the map.
+  [[nodiscard]] bool maySeeThrough(const Eigen::Vector3f& center, float radius) const;
+
 private:
   /// Azimuth as \ref pseudoAzimuth, and the tangent of the elevation.
   static constexpr int kColumns = 512;
   static constexpr int kRows = 208;
   static constexpr float kSteepest = 1.2F;  ///< 50 degrees up and down
+  static constexpr int kPatch = 4;          ///< cells along the side of a patch
 
   struct Cell {
     int column;
     int row;  ///< out of [0, kRows) where it is steeper
   };
 
+  [[nodiscard]] static std::size_t placeOf(int column, int row, int columns)
+  {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+  }
   [[nodiscard]] static float clearlyBeyond(float range);
   [[nodiscard]] static Cell cellOf(const Eigen::Vector3f& direction);
   [[nodiscard]] bool allBeyond(int column, int row, float range) const;
   [[nodiscard]] bool nextBeyond(const Cell& cell, int up, float range) const;
   [[nodiscard]] const Eigen::Vector3f& at(int column, int row) const
   {
-    return nearest_[static_cast<std::size_t>(row * kColumns + column)];
+    return nearest_[placeOf(column, row, kColumns)];
   }
 
   std::vector<Eigen::Vector3f> nearest_;  ///< return of each cell; zero where there is none
+  std::vector<float> farthest_;           ///< range of each patch of cells; zero where there is no return
 };
 
 }  // namespace pcl_floam

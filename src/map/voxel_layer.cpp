@@ -273,6 +273,7 @@ std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& wor
   constexpr float kWeight = 10.0F;
   const SE3 sensor_T_world = world_T_sensor.inverse();
   const Eigen::Matrix3f rotation = sensor_T_world.rotation.cast<float>();
+  const Eigen::Vector3f half = Eigen::Vector3f::Constant(static_cast<float>(0.5 * block_size_));
   std::size_t forgotten = 0;
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 64) reduction(+ : forgotten)
   for (std::ptrdiff_t b = 0; b < static_cast<std::ptrdiff_t>(blocks_.size()); ++b) {
@@ -283,6 +284,9 @@ std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& wor
       continue;
     }
     const Eigen::Vector3f corner_in_sensor = (sensor_T_world * corner).cast<float>();
+    if (!scan.maySeeThrough(corner_in_sensor + rotation * half, half.norm())) {
+      continue;
+    }
     for (std::size_t i = 0; i < block.size();) {
       const bool stays = !scan.seesThrough(corner_in_sensor + rotation * block.point(i)) || block.weaken(i, kWeight);
       i += stays ? 1 : 0;

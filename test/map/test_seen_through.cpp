@@ -1,4 +1,7 @@
 // What later scans see through leaves the map.
+#include "map/range_image.h"
+#include "support/random_motion.h"
+
 #include <pcl_floam/map/keyframe_voxel_map.h>
 
 #include <gtest/gtest.h>
@@ -251,6 +254,32 @@ TEST(SeenThrough, TheFloorStaysWhereBeamsPassJustAboveIt)
     }
     EXPECT_EQ(size(map), before) << lines;
   }
+}
+
+/// Whole blocks are passed over only where each of their places would be.
+TEST(SeenThrough, WhatIsToldOfABlockHoldsForItsPlaces)
+{
+  const RangeImage scan(scanOf(15.0F, true, 0.02F));
+  std::mt19937 random(3);
+  const auto randomVector = [&random](double limit) {
+    return Eigen::Vector3f(static_cast<float>(uniform(random, limit)), static_cast<float>(uniform(random, limit)),
+                           static_cast<float>(uniform(random, 0.2 * limit)));
+  };
+  constexpr float kRadius = 0.87F;
+  int seen_through = 0;
+  int passed_over = 0;
+  for (int block = 0; block < 3000; ++block) {
+    const Eigen::Vector3f center = randomVector(14.0);
+    const bool may = scan.maySeeThrough(center, kRadius);
+    passed_over += may ? 0 : 1;
+    for (int n = 0; n < 50; ++n) {
+      const Eigen::Vector3f place = center + randomVector(0.5);
+      seen_through += scan.seesThrough(place) ? 1 : 0;
+      ASSERT_TRUE(may || !scan.seesThrough(place)) << center.transpose();
+    }
+  }
+  EXPECT_GT(seen_through, 1000);
+  EXPECT_GT(passed_over, 300);
 }
 
 /// Boards of a rack, 4 cm thick, before a wall: most beams pass between them.

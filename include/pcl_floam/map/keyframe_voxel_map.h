@@ -66,13 +66,13 @@ public:
   /// \param threads       >= 1; the map does not depend on it
   void insert(const FeatureSet& features, const SE3& world_T_sensor, int threads = 1);
 
-  /// Adds points to a layer, as they are in a saved map: each stands for many, and is forgotten only once two scans have
-  /// seen through it. World frame, m; points that are not finite are left out.
+  /// Adds points to a layer, as they are in a saved map: each stands for many, and is forgotten only once two scans
+  /// have seen through it. World frame, m; points that are not finite are left out.
   void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
 
-  /// Takes weight from the voxels that a scan sees through, up to `see_through_range` from the sensor, and forgets those
-  /// that have none left. A voxel that was hit once or a few times goes at once, one that was hit often after some scans.
-  /// \param points         of one scan, in the sensor's frame, m, undistorted; ones that are not finite are left out
+  /// Takes weight from the voxels that a scan sees through, up to `see_through_range` from the sensor, and forgets
+  /// those that have none left: at once where one was hit once or a few times, else after some scans.
+  /// \param points         of one scan, in the sensor's frame, m, undistorted; left out where not finite
   /// \param world_T_sensor finite
   /// \param threads        >= 1; the map does not depend on it
   void forgetSeenThrough(const std::vector<Eigen::Vector3f>& points, const SE3& world_T_sensor, int threads = 1);
