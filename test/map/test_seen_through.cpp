@@ -256,6 +256,15 @@ TEST(SeenThrough, TheFloorStaysWhereBeamsPassJustAboveIt)
   }
 }
 
+/// Both places are in the cell of the only beam.
+TEST(SeenThrough, TheBeamMustPassTheVeryPlace)
+{
+  const auto towards = [](float azimuth) { return Eigen::Vector3f(std::cos(azimuth), std::sin(azimuth), 0.005F); };
+  const RangeImage scan({30.0F * towards(0.7856F)});
+  EXPECT_TRUE(scan.seesThrough(10.0F * towards(0.7906F)));
+  EXPECT_FALSE(scan.seesThrough(10.0F * towards(0.8008F)));
+}
+
 /// Whole blocks are passed over only where each of their places would be.
 TEST(SeenThrough, WhatIsToldOfABlockHoldsForItsPlaces)
 {
