@@ -3,7 +3,6 @@
 #include "odometry/vertical_correction.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace pcl_floam {
 
@@ -20,10 +19,7 @@ std::int32_t nearestOf(const CloudView& scan, const ScanLines& lines, std::int32
     const std::int32_t index = lines.index[static_cast<std::size_t>(n)];
     const auto i = static_cast<std::size_t>(index);
     const float squared_range = Eigen::Vector3f(scan.x(i), scan.y(i), scan.z(i)).squaredNorm();
-    if (squared_range < nearest) {
-      continue;
-    }
-    if (squared_range < least) {
+    if (squared_range >= nearest && squared_range < least) {
       least = squared_range;
       found = index;
     }

@@ -15,8 +15,9 @@
 namespace pcl_floam {
 
 /// About 12000 points, as seen at the motion's reference instant: of neighbours along a scan line always the nearest,
-/// so that a pole is not lost before a wall. \param ranges points nearer or farther than these are left out \param
-/// vertical_correction degrees
+/// so that a pole is not lost before a wall.
+/// \param ranges              of its settings the ranges alone: points nearer or farther are left out
+/// \param vertical_correction degrees
 [[nodiscard]] std::vector<Eigen::Vector3f> undistortedSample(const CloudView& scan, const ScanLines& lines,
                                                              const ScanTiming& timing, const FeatureParameters& ranges,
                                                              double vertical_correction, const SweepMotion& motion);

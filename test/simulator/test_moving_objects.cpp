@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <iostream>
 #include <set>
 #include <string>
 #include <tuple>
@@ -116,6 +115,11 @@ TEST_P(MovingObjects, LeaveTheMapWhereTheyNoLongerAre)
   }
   const MapPoints usual = mapPoints(forgetting, standing, moved);
   const MapPoints all = mapPoints(keeping, standing, moved);
+  const auto percentOf = [](std::size_t left, std::size_t of) {
+    return std::to_string(100.0 * static_cast<double>(left) / static_cast<double>(of));
+  };
+  RecordProperty("percent_left_of_what_has_gone", percentOf(usual.of_what_has_gone, all.of_what_has_gone));
+  RecordProperty("percent_left_of_what_stands", percentOf(usual.of_what_stands, all.of_what_stands));
   EXPECT_GT(all.of_what_has_gone, 100U);
   EXPECT_LT(static_cast<double>(usual.of_what_has_gone), GetParam().gone * static_cast<double>(all.of_what_has_gone));
   EXPECT_GT(static_cast<double>(usual.of_what_stands), 0.995 * static_cast<double>(all.of_what_stands));
