@@ -138,9 +138,9 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotat
 
 double azimuthFraction(const ScanTiming& timing, const CloudView& cloud, std::size_t i)
 {
-  const double azimuth = std::atan2(cloud.y(i), cloud.x(i));  // in float: 1e-7 of a turn is enough
-  const double turned = timing.clockwise ? timing.start_azimuth - azimuth : azimuth - timing.start_azimuth;
-  double fraction = turned / kTwoPi;
+  const double azimuth = azimuthInTurns(cloud.x(i), cloud.y(i));
+  const double start = timing.start_azimuth / kTwoPi;
+  double fraction = timing.clockwise ? start - azimuth : azimuth - start;
   fraction -= std::floor(fraction);
   if (timing.firing_order) {
     // Around the seam the same azimuth comes twice; the place in the cloud tells which of the two it is.

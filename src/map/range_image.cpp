@@ -9,23 +9,26 @@
 namespace pcl_floam {
 
 RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
-    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Eigen::Vector3f::Zero()),
+    : nearest_(static_cast<std::size_t>(kColumns) * kRows, 0.0F),
+      beam_(nearest_.size()),
       farthest_(nearest_.size() / kPatch / kPatch, 0.0F)
 {
   for (const Eigen::Vector3f& point : points) {
-    if (!std::isfinite(point.squaredNorm())) {
+    const float range = point.norm();
+    if (!std::isfinite(range)) {
       continue;
     }
     const Cell cell = cellOf(point);
     if (cell.row < 0 || cell.row >= kRows) {
       continue;
     }
-    Eigen::Vector3f& nearest = nearest_[placeOf(cell.column, cell.row, kColumns)];
-    if (nearest.isZero(0.0F) || point.squaredNorm() < nearest.squaredNorm()) {
-      nearest = point;
+    const std::size_t place = placeOf(cell.column, cell.row, kRows);
+    if (nearest_[place] == 0.0F || range < nearest_[place]) {
+      nearest_[place] = range;
+      beam_[place] = point / range;
     }
-    float& farthest = farthest_[placeOf(cell.column / kPatch, cell.row / kPatch, kColumns / kPatch)];
-    farthest = std::max(farthest, point.norm());
+    float& farthest = farthest_[placeOf(cell.column / kPatch, cell.row / kPatch, kRows / kPatch)];
+    farthest = std::max(farthest, range);
   }
 }
 
@@ -68,10 +71,10 @@ bool RangeImage::maySeeThrough(const Eigen::Vector3f& center, float radius) cons
   const int first_column = static_cast<int>(std::floor(column - columns));
   const int last_column = static_cast<int>(std::floor(column + columns));
   const float far = clearlyBeyond(center.norm() - radius);
-  for (int r = first_row; r <= last_row; ++r) {
-    for (int c = first_column; c <= last_column; ++c) {
-      const int wrapped = (c + kPatchColumns) % kPatchColumns;
-      if (farthest_[placeOf(wrapped, r, kPatchColumns)] >= far) {
+  for (int c = first_column; c <= last_column; ++c) {
+    const int wrapped = (c + kPatchColumns) % kPatchColumns;
+    for (int r = first_row; r <= last_row; ++r) {
+      if (farthest_[placeOf(wrapped, r, kRows / kPatch)] >= far) {
         return true;
       }
     }
@@ -83,8 +86,8 @@ bool RangeImage::maySeeThrough(const Eigen::Vector3f& center, float radius) cons
 bool RangeImage::allBeyond(int column, int row, float range) const
 {
   for (int step = -1; step <= 1; ++step) {
-    const Eigen::Vector3f& near = at((column + step + kColumns) % kColumns, row);
-    if (!near.isZero(0.0F) && near.squaredNorm() < range * range) {
+    const float nearest = rangeAt((column + step + kColumns) % kColumns, row);
+    if (nearest != 0.0F && nearest < range) {
       return false;
     }
   }
@@ -100,7 +103,7 @@ bool RangeImage::nextBeyond(const Cell& cell, int up, float range) const
     if (!allBeyond(cell.column, row, range)) {
       return false;
     }
-    if (!at(cell.column, row).isZero(0.0F)) {
+    if (rangeAt(cell.column, row) != 0.0F) {
       return true;
     }
   }
@@ -115,7 +118,7 @@ bool RangeImage::seesThrough(const Eigen::Vector3f& place) const
   }
   const float range = place.norm();
   const float far = clearlyBeyond(range);
-  if (at(cell.column, cell.row).squaredNorm() < far * far) {  // or there is none
+  if (rangeAt(cell.column, cell.row) < far) {  // or there is none
     return false;
   }
   if (!allBeyond(cell.column, cell.row, far) || !nextBeyond(cell, 1, far) || !nextBeyond(cell, -1, far)) {
@@ -123,7 +126,7 @@ bool RangeImage::seesThrough(const Eigen::Vector3f& place) const
   }
   constexpr float kThrough = 0.05F;           // m from the beam
   constexpr float kThroughPerRange = 0.012F;  // rad: a cell
-  const Eigen::Vector3f beam = at(cell.column, cell.row).normalized();
+  const Eigen::Vector3f& beam = beam_[placeOf(cell.column, cell.row, kRows)];
   return (place - beam.dot(place) * beam).norm() < std::max(kThrough, kThroughPerRange * range);
 }
 

@@ -34,21 +34,20 @@ private:
     int row;  ///< out of [0, kRows) where it is steeper
   };
 
-  [[nodiscard]] static std::size_t placeOf(int column, int row, int columns)
+  /// The cells above and below one are looked at with it, so columns are what is contiguous.
+  [[nodiscard]] static std::size_t placeOf(int column, int row, int rows)
   {
-    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+    return static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);
   }
   [[nodiscard]] static float clearlyBeyond(float range);
   [[nodiscard]] static Cell cellOf(const Eigen::Vector3f& direction);
   [[nodiscard]] bool allBeyond(int column, int row, float range) const;
   [[nodiscard]] bool nextBeyond(const Cell& cell, int up, float range) const;
-  [[nodiscard]] const Eigen::Vector3f& at(int column, int row) const
-  {
-    return nearest_[placeOf(column, row, kColumns)];
-  }
+  [[nodiscard]] float rangeAt(int column, int row) const { return nearest_[placeOf(column, row, kRows)]; }
 
-  std::vector<Eigen::Vector3f> nearest_;  ///< return of each cell; zero where there is none
-  std::vector<float> farthest_;           ///< range of each patch of cells; zero where there is no return
+  std::vector<float> nearest_;         ///< range of each cell's return; zero where there is none
+  std::vector<Eigen::Vector3f> beam_;  ///< unit vectors to those returns; where there are none, anything
+  std::vector<float> farthest_;        ///< range of each patch of cells; zero where there is no return
 };
 
 }  // namespace pcl_floam

@@ -1,4 +1,5 @@
 // When within the sweep a point was measured.
+#include "filters/azimuth.h"
 #include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/scan_timing.h>
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace pcl_floam::test {
@@ -49,6 +51,28 @@ pcl::PCLPointCloud2 cloudWithTimes(const std::vector<Return>& returns, const std
     times.push_back(static_cast<T>(first + r.fraction * sweep));
   }
   return CloudBuilder().positions(returns).field(name, times).build();
+}
+
+TEST(Azimuth, InTurnsIsThatOfTheStandardLibrary)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> angle(-0.5 * kTwoPi, 0.5 * kTwoPi);
+  std::uniform_real_distribution<double> exponent(-3.0, 3.0);
+  for (int i = 0; i < 100000; ++i) {
+    const double range = std::pow(10.0, exponent(random));
+    const double azimuth = angle(random);
+    const auto x = static_cast<float>(range * std::cos(azimuth));
+    const auto y = static_cast<float>(range * std::sin(azimuth));
+    const double expected = std::atan2(static_cast<double>(y), static_cast<double>(x)) / kTwoPi;
+    const double difference = static_cast<double>(azimuthInTurns(x, y)) - expected;
+    ASSERT_LT(std::abs(difference - std::round(difference)), 1e-7) << x << ' ' << y;
+    ASSERT_GE(azimuthInTurns(x, y), 0.0F);
+    ASSERT_LE(azimuthInTurns(x, y), 1.0F);
+  }
+  EXPECT_EQ(azimuthInTurns(0.0F, 0.0F), 0.0F);
+  EXPECT_FLOAT_EQ(azimuthInTurns(0.0F, 2.0F), 0.25F);
+  EXPECT_FLOAT_EQ(azimuthInTurns(-2.0F, 0.0F), 0.5F);
+  EXPECT_FLOAT_EQ(azimuthInTurns(0.0F, -2.0F), 0.75F);
 }
 
 struct TimeField {
