@@ -197,6 +197,9 @@ private:
     run.guess = exp(scans_.periods * twist);
     run.guess_uncertainty = uncertainty;
     run.threads = parameters_.threads;
+    // As later on, while the map is young. Without it, what the few spread features had found ended with the traffic
+    // after all, when 30 % of the returns were missing (highway, seed 22): 108 instead of 0.15 %.
+    run.spread_features = true;
     run.sweep.twist = sweep_twist;
     run.sweep.reference = scans_.reference;
     const FeatureTarget target{&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)};

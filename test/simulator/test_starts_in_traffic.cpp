@@ -12,16 +12,19 @@ namespace pcl_floam::simulator {
 
 struct Start {
   unsigned seed;
-  double seconds;  // into the drive
+  double seconds;        // into the drive
+  double dropout = 0.0;  // part of the returns that is missing
 };
 
 class StartsInTraffic : public testing::TestWithParam<Start> {};
 
 INSTANTIATE_TEST_SUITE_P(Highway, StartsInTraffic,
-                         testing::Values(Start{21, 25.3}, Start{21, 34.5}, Start{22, 0.0}, Start{22, 6.9}),
+                         testing::Values(Start{21, 25.3}, Start{21, 34.5}, Start{22, 0.0}, Start{22, 6.9},
+                                         Start{22, 0.0, 0.3}),
                          [](const auto& parameter) {
                            return "Seed" + std::to_string(parameter.param.seed) + "At" +
-                                  std::to_string(static_cast<int>(parameter.param.seconds));
+                                  std::to_string(static_cast<int>(parameter.param.seconds)) +
+                                  (parameter.param.dropout > 0.0 ? "WithReturnsMissing" : "");
                          });
 
 TEST_P(StartsInTraffic, TheWorldIsWhatStands)
@@ -31,6 +34,7 @@ TEST_P(StartsInTraffic, TheWorldIsWhatStands)
   options.sensor = "hdl64";
   options.seed = GetParam().seed;
   options.start = GetParam().seconds;
+  options.dropout = GetParam().dropout;
   Simulation simulation(options);
   Odometry<PointXYZIRT> odometry;
   SE3 last_truth;
