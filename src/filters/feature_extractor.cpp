@@ -3,6 +3,7 @@
 #include "common/median.h"
 #include "common/multi_version.h"
 #include "common/parameter_check.h"
+#include "filters/edge_position.h"
 #include "filters/line_points.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
@@ -146,8 +147,7 @@ private:
       std::pop_heap(heap.begin(), heap.end(), isLess);
       const int sharpest = heap.back().place;
       if (isEdge(sharpest)) {
-        features_.edges.push_back(makeFeature(sharpest));
-        takeNeighborhood(sharpest);
+        takeEdge(sharpest);
         ++taken;
       }
     }
@@ -206,11 +206,23 @@ private:
     }
   }
 
-  /// What is part of an edge's neighbourhood is neither another edge nor a plane.
-  void takeNeighborhood(int n)
+  void takeEdge(int sharpest)
   {
-    const int first = std::max(0, n - parameters_.neighbors_each_side);
-    const int last = std::min(line_.points.size() - 1, n + parameters_.neighbors_each_side);
+    const LineEdge edge = locateEdge(line_.points, sharpest, threshold_);
+    Feature feature = makeFeature(sharpest);
+    feature.x = edge.position.x();
+    feature.y = edge.position.y();
+    feature.z = edge.position.z();
+    feature.time = timeOf(edge.middle());
+    features_.edges.push_back(feature);
+    takeNeighborhood(std::min(sharpest, edge.first), std::max(sharpest, edge.last));
+  }
+
+  /// What is part of an edge's neighbourhood is neither another edge nor a plane.
+  void takeNeighborhood(int from, int to)
+  {
+    const int first = std::max(0, from - parameters_.neighbors_each_side);
+    const int last = std::min(line_.points.size() - 1, to + parameters_.neighbors_each_side);
     for (int k = first; k <= last; ++k) {
       line_.sharpness[static_cast<std::size_t>(k)] = 0.0F;
       line_.flatness[static_cast<std::size_t>(k)] = kNeverFlat;
@@ -226,8 +238,13 @@ private:
     feature.z = line_.points.z[k];
     feature.smoothness = line_.sigma[k];
     feature.index = lines_.index[first_index_ + k];
-    feature.time = timing_.at(cloud_, static_cast<std::size_t>(feature.index));
+    feature.time = timeOf(n);
     return feature;
+  }
+
+  [[nodiscard]] float timeOf(int n) const
+  {
+    return timing_.at(cloud_, static_cast<std::size_t>(lines_.index[first_index_ + static_cast<std::size_t>(n)]));
   }
 
   [[nodiscard]] float sharpness(int n) const { return line_.sharpness[static_cast<std::size_t>(n)]; }

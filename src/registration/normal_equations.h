@@ -15,7 +15,7 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`.
+/// parameters' `kernel_scale`. That of a few edges is no greater than that of many planes.
 [[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
                                              const Correspondences& correspondences);
 

@@ -81,15 +81,65 @@ TEST(FeatureExtraction, FeaturesAreTheCloudsPoints)
   extraction.setInputCloud(cloud);
   ASSERT_TRUE(extraction.extract(features));
   std::set<std::int32_t> seen;
-  for (const auto* set : {&features.edges, &features.planes}) {
-    for (const Feature& feature : *set) {
-      const PointXYZIRT& point = (*cloud)[static_cast<std::size_t>(feature.index)];
-      EXPECT_EQ(feature.x, point.x);
-      EXPECT_EQ(feature.y, point.y);
-      EXPECT_EQ(feature.z, point.z);
-      EXPECT_NEAR(feature.time, point.time / 0.1F, 1e-5F);
-      EXPECT_TRUE(seen.insert(feature.index).second) << "both edge and plane, or twice";
+  for (const Feature& feature : features.planes) {
+    const PointXYZIRT& point = (*cloud)[static_cast<std::size_t>(feature.index)];
+    EXPECT_EQ(feature.x, point.x);
+    EXPECT_EQ(feature.y, point.y);
+    EXPECT_EQ(feature.z, point.z);
+    EXPECT_NEAR(feature.time, point.time / 0.1F, 1e-5F);
+    EXPECT_TRUE(seen.insert(feature.index).second) << "twice";
+  }
+  // Edges are where the surfaces meet, not farther from the point than the next one is.
+  int moved = 0;
+  for (const Feature& feature : features.edges) {
+    const PointXYZIRT& point = (*cloud)[static_cast<std::size_t>(feature.index)];
+    const Eigen::Vector3f off(feature.x - point.x, feature.y - point.y, feature.z - point.z);
+    EXPECT_LT(off.norm(), 0.4F);
+    moved += off.norm() > 0.0F ? 1 : 0;
+    EXPECT_NEAR(feature.time, point.time / 0.1F, 1e-5F);
+    EXPECT_TRUE(seen.insert(feature.index).second) << "both edge and plane, or twice";
+  }
+  EXPECT_GT(moved, static_cast<int>(features.edges.size()) / 2);
+}
+
+TEST(FeatureExtraction, APostIsOneEdgeAScanLineAtItsAxis)
+{
+  Room room;
+  room.walls = {{-30.0, -30.0, -30.0}, {30.0, 30.0, 30.0}};
+  room.furniture = {{{7.95, 2.95, -30.0}, {8.05, 3.05, 30.0}}};
+  const auto cloud = scanOf(room);
+  FeatureSet features;
+  Extraction extraction;
+  extraction.setInputCloud(cloud);
+  ASSERT_TRUE(extraction.extract(features));
+  std::set<int> rings;
+  for (const Feature& edge : features.edges) {
+    const Eigen::Vector2f off(edge.x - 8.0F, edge.y - 3.0F);
+    if (off.norm() < 1.0F) {
+      EXPECT_LT(off.norm(), 0.04F) << "its surface is 5 cm away and more, the beams are 6 cm apart";
+      EXPECT_TRUE(rings.insert((*cloud)[static_cast<std::size_t>(edge.index)].ring).second);
     }
+  }
+  EXPECT_GT(rings.size(), 20U);
+}
+
+TEST(FeatureExtraction, AnEdgeThatWasAskedForIsSaidToBeAtAPointThatWasAskedFor)
+{
+  const auto cloud = scanOf(Room());
+  auto every_second_column = pcl::make_shared<pcl::Indices>();
+  for (std::size_t i = 0; i < cloud->size(); ++i) {
+    if (i / 32 % 2 == 0) {  // 32 points a column
+      every_second_column->push_back(static_cast<int>(i));
+    }
+  }
+  FeatureSet features;
+  Extraction extraction;
+  extraction.setInputCloud(cloud);
+  extraction.setIndices(every_second_column);
+  ASSERT_TRUE(extraction.extract(features));
+  EXPECT_GT(features.edges.size(), 50U);
+  for (const Feature& edge : features.edges) {
+    EXPECT_EQ(edge.index / 32 % 2, 0);
   }
 }
 

@@ -314,6 +314,24 @@ TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
   EXPECT_NEAR(adaptKernelScales(problem_, correspondences).plane, 3.0 * 1.4826 * 0.1, 1e-9);
 }
 
+TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsNoGreaterThanThatOfThePlanes)
+{
+  constexpr double kEdgesOff = 0.8;
+  const auto scalesWith = [&](std::size_t edges, std::size_t planes) {
+    Correspondences correspondences = Scan(trajectory_, 0.0, edges, planes).along(trajectory_);
+    for (auto& c : correspondences.edges) {
+      c.factor.center += kEdgesOff * c.factor.direction.unitOrthogonal();
+    }
+    return adaptKernelScales(problem_, correspondences);
+  };
+  const double smallest = problem_.parameters.kernel_scale;
+  EXPECT_NEAR(scalesWith(2, 500).edge, smallest, 1e-9);
+  EXPECT_NEAR(scalesWith(39, 500).edge, smallest, 1e-9);
+  EXPECT_NEAR(scalesWith(40, 500).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so many speak for themselves";
+  EXPECT_NEAR(scalesWith(39, 39).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so few planes are no measure either";
+  EXPECT_NEAR(scalesWith(0, 500).edge, smallest, 1e-9);
+}
+
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)
 {
   parameters_.kernel = RobustKernel::none;

@@ -8,6 +8,9 @@
 namespace pcl_floam {
 
 /// A point of a scan that was found to lie on an edge or on a plane.
+///
+/// A plane feature is at that point. An edge feature is at the edge: where the surface ends or meets the next one, or
+/// at the axis of something thin. See locateEdge() in the sources.
 struct Feature {
   float x = 0.0F;  ///< m, in the sensor's frame
   float y = 0.0F;

@@ -1,0 +1,282 @@
+// Where the edge is that a scan line's sharpest point stands for.
+#include "filters/edge_position.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace pcl_floam::test {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr float kNoise = 0.1F;
+
+/// A horizontal fan of beams. The shape gives each beam's range by its azimuth, or nothing where none comes back.
+using Shape = std::function<std::optional<double>(const Eigen::Vector2d& origin, const Eigen::Vector2d& ray)>;
+
+struct Fan {
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+  double from = -0.2;  // rad
+  double to = 0.2;
+  double step = 0.0035;
+  double phase = 0.0;  // part of a step
+};
+
+LinePoints seenBy(const Fan& fan, const Shape& shape)
+{
+  LinePoints line;
+  for (double azimuth = fan.from + fan.phase * fan.step; azimuth < fan.to; azimuth += fan.step) {
+    const Eigen::Vector2d ray(std::cos(azimuth), std::sin(azimuth));
+    if (const auto range = shape(fan.origin, ray)) {
+      line.x.push_back(static_cast<float>(*range * ray.x()));
+      line.y.push_back(static_cast<float>(*range * ray.y()));
+      line.z.push_back(0.0F);
+    }
+  }
+  line.measure();
+  return line;
+}
+
+/// A wall across the view, far behind.
+double background(const Eigen::Vector2d& origin, const Eigen::Vector2d& ray)
+{
+  return (40.0 - origin.x()) / ray.x();
+}
+
+/// Where a ray meets a segment; infinity if nowhere.
+double toSegment(const Eigen::Vector2d& origin, const Eigen::Vector2d& ray, const Eigen::Vector2d& a,
+                 const Eigen::Vector2d& b)
+{
+  Eigen::Matrix2d m;
+  m << ray, a - b;
+  const Eigen::Vector2d solution = m.inverse() * (a - origin);
+  const bool meets = solution[0] > 0.0 && solution[1] >= 0.0 && solution[1] <= 1.0;
+  return meets ? solution[0] : std::numeric_limits<double>::infinity();
+}
+
+Shape roundPost(const Eigen::Vector2d& center, double radius, bool with_background = true)
+{
+  return [=](const Eigen::Vector2d& origin, const Eigen::Vector2d& ray) -> std::optional<double> {
+    const Eigen::Vector2d to_center = center - origin;
+    const double along = to_center.dot(ray);
+    const double inside = radius * radius - (to_center - along * ray).squaredNorm();
+    if (inside >= 0.0) {
+      return along - std::sqrt(inside);
+    }
+    return with_background ? std::optional<double>(background(origin, ray)) : std::nullopt;
+  };
+}
+
+/// Straight walls from corner to corner before the background.
+Shape walls(const std::vector<Eigen::Vector2d>& corners)
+{
+  return [=](const Eigen::Vector2d& origin, const Eigen::Vector2d& ray) -> std::optional<double> {
+    double nearest = background(origin, ray);
+    for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+      nearest = std::min(nearest, toSegment(origin, ray, corners[i], corners[i + 1]));
+    }
+    return nearest;
+  };
+}
+
+std::vector<Eigen::Vector2d> squarePost(const Eigen::Vector2d& center, double side, double turn)
+{
+  std::vector<Eigen::Vector2d> corners;
+  for (int i = 0; i <= 4; ++i) {
+    const double angle = turn + 0.5 * kPi * i;
+    corners.emplace_back(center + side / std::sqrt(2.0) * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return corners;
+}
+
+/// The places of the points that are nearer than the background by more than a metre.
+std::vector<int> foreground(const LinePoints& line)
+{
+  std::vector<int> places;
+  for (int n = 0; n < line.size(); ++n) {
+    if (line.x[static_cast<std::size_t>(n)] < 30.0F) {
+      places.push_back(n);
+    }
+  }
+  return places;
+}
+
+Eigen::Vector2d inPlane(const Eigen::Vector3f& position)
+{
+  return position.head<2>().cast<double>();
+}
+
+Eigen::Vector2d pointAt(const LinePoints& line, int n)
+{
+  return {line.x[static_cast<std::size_t>(n)], line.y[static_cast<std::size_t>(n)]};
+}
+
+TEST(EdgePosition, APostIsTakenByItsAxisWhicheverOfItsPointsIsAsked)
+{
+  const Eigen::Vector2d center(10.0, 0.3);
+  for (const double radius : {0.04, 0.1, 0.18}) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    constexpr int kPhases = 20;
+    for (int i = 0; i < kPhases; ++i) {
+      Fan fan;
+      fan.phase = static_cast<double>(i) / kPhases;
+      const LinePoints line = seenBy(fan, roundPost(center, radius));
+      const std::vector<int> seen = foreground(line);
+      ASSERT_FALSE(seen.empty());
+      const LineEdge edge = locateEdge(line, seen.front(), kNoise);
+      EXPECT_EQ(edge.first, seen.front());
+      EXPECT_EQ(edge.last, seen.back());
+      for (const int n : seen) {
+        EXPECT_EQ(locateEdge(line, n, kNoise).position, edge.position);
+      }
+      EXPECT_NEAR(inPlane(edge.position).y(), center.y(), 0.55 * 0.0035 * center.x()) << "half a beam";
+      mean += inPlane(edge.position) / kPhases;
+    }
+    EXPECT_NEAR(mean.x(), center.x(), 0.35 * radius) << "the nearest point of the surface is a whole radius away";
+    EXPECT_NEAR(mean.y(), center.y(), 0.002);
+  }
+}
+
+TEST(EdgePosition, AThinThingIsInTheSamePlaceFromAllSides)
+{
+  const double side = 0.12;
+  const Eigen::Vector2d center = Eigen::Vector2d::Zero();
+  for (const double turn : {0.0, 0.3, 0.6}) {
+    double worst = 0.0;
+    double raw = 0.0;
+    for (int i = 0; i < 36; ++i) {
+      const double angle = 2.0 * kPi * i / 36;
+      // The post is turned instead of the sensor.
+      const Eigen::Vector2d place(8.0, 0.0);
+      const LinePoints line = seenBy(Fan(), walls(squarePost(place + center, side, turn - angle)));
+      const std::vector<int> seen = foreground(line);
+      const LineEdge edge = locateEdge(line, seen.front(), kNoise);
+      worst = std::max(worst, (inPlane(edge.position) - place).norm());
+      raw = std::max(raw, (pointAt(line, seen.front()) - place).norm());
+    }
+    EXPECT_LT(worst, 0.3 * side);
+    EXPECT_GT(raw, 0.5 * side) << "the points themselves are half a width away and more";
+  }
+}
+
+TEST(EdgePosition, ASurfaceEndsHalfAStepBehindItsLastPoint)
+{
+  // Along it, as the wall of a corridor beside an open door.
+  const Eigen::Vector2d end(6.0, 1.2);
+  double located = 0.0;
+  double last_point = 0.0;
+  constexpr int kPhases = 50;
+  for (int i = 0; i < kPhases; ++i) {
+    Fan fan;
+    fan.from = 0.1;
+    fan.to = 0.9;
+    fan.phase = static_cast<double>(i) / kPhases;
+    const LinePoints line = seenBy(fan, walls({{1.0, 1.2}, end}));
+    const std::vector<int> seen = foreground(line);
+    // The wall is seen from its far end on.
+    const LineEdge edge = locateEdge(line, seen.front(), kNoise);
+    EXPECT_EQ(edge.middle(), seen.front());
+    EXPECT_NEAR(edge.position.y(), 1.2F, 1e-4F) << "it stays on the surface";
+    located += (edge.position.x() - end.x()) / kPhases;
+    last_point += (pointAt(line, seen.front()).x() - end.x()) / kPhases;
+  }
+  EXPECT_LT(last_point, -0.04) << "points are short of the end, in the mean by half of 11 cm";
+  EXPECT_NEAR(located, 0.0, 0.1 * std::abs(last_point));
+}
+
+TEST(EdgePosition, ACornerIsWhereTwoSurfacesMeet)
+{
+  const Eigen::Vector2d corner(5.0, 0.2);
+  for (const double opening : {1.2, 1.57, 2.0}) {
+    for (int i = 0; i < 10; ++i) {
+      Fan fan;
+      fan.phase = 0.1 * i;
+      const Eigen::Vector2d other = corner + 2.0 * Eigen::Vector2d(std::sin(0.7 + opening), std::cos(0.7 + opening));
+      const LinePoints line =
+          seenBy(fan, walls({corner + 2.0 * Eigen::Vector2d(std::sin(0.7), std::cos(0.7)), corner, other}));
+      int nearest = 0;
+      for (int n = 0; n < line.size(); ++n) {
+        if ((pointAt(line, n) - corner).norm() < (pointAt(line, nearest) - corner).norm()) {
+          nearest = n;
+        }
+      }
+      EXPECT_GT((pointAt(line, nearest) - corner).norm(), 1e-4);
+      EXPECT_LT((inPlane(locateEdge(line, nearest, kNoise).position) - corner).norm(), 1e-4);
+    }
+  }
+}
+
+TEST(EdgePosition, AStraightWallIsLeftAsItIs)
+{
+  const LinePoints line = seenBy(Fan(), walls({{6.0, -3.0}, {8.0, 3.0}}));
+  for (int n = 1; n + 1 < line.size(); ++n) {
+    EXPECT_EQ(inPlane(locateEdge(line, n, kNoise).position), pointAt(line, n));
+  }
+}
+
+TEST(EdgePosition, WhatIsPartlyHiddenIsNotTakenForThin)
+{
+  // A wide box behind the edge of a nearer one: only 20 cm of it show.
+  const LinePoints line = seenBy(Fan(), [](const Eigen::Vector2d& origin, const Eigen::Vector2d& ray) {
+    return std::optional<double>(std::min({background(origin, ray), toSegment(origin, ray, {4.0, -1.0}, {4.0, 0.0}),
+                                           toSegment(origin, ray, {8.0, -2.0}, {8.0, 0.2})}));
+  });
+  int last = 0;
+  for (int n = 0; n < line.size(); ++n) {
+    last = std::abs(line.x[static_cast<std::size_t>(n)] - 8.0F) < 0.1F ? n : last;
+  }
+  const LineEdge edge = locateEdge(line, last, kNoise);
+  EXPECT_EQ(edge.first, last);
+  EXPECT_NEAR(edge.position.x(), 8.0F, 1e-4F) << "not behind the surface";
+  EXPECT_NEAR(edge.position.y(), 0.2F, 0.5F * 0.0035F * 8.0F);
+}
+
+TEST(EdgePosition, APostBeforeTheSkyIsTakenByItsAxisUnlessOneBeamAloneHitIt)
+{
+  const Eigen::Vector2d center(10.0, 0.0);
+  const auto lineWith = [&](double radius) {
+    Fan fan;
+    fan.phase = 0.5;
+    LinePoints line = seenBy(fan, roundPost(center, radius, false));
+    // What else the scan line sees is far to the sides.
+    for (const auto& [x, y] : {std::pair{10.0F, -5.0F}, std::pair{10.0F, 5.0F}}) {
+      const auto at = y < 0.0F ? line.x.begin() - line.x.begin() : static_cast<std::ptrdiff_t>(line.x.size());
+      line.x.insert(line.x.begin() + at, x);
+      line.y.insert(line.y.begin() + at, y);
+      line.z.insert(line.z.begin() + at, 0.0F);
+    }
+    line.measure();
+    return line;
+  };
+  const LinePoints several = lineWith(0.1);
+  ASSERT_GT(several.size(), 4);
+  EXPECT_LT((inPlane(locateEdge(several, 1, kNoise).position) - center).norm(), 0.05);
+  const LinePoints one = lineWith(0.02);
+  ASSERT_EQ(one.size(), 3);
+  EXPECT_EQ(inPlane(locateEdge(one, 1, kNoise).position), pointAt(one, 1));
+}
+
+TEST(EdgePosition, TheEndsOfAScanLineAreRespected)
+{
+  for (int count = 3; count < 6; ++count) {
+    LinePoints line;
+    for (int n = 0; n < count; ++n) {
+      line.x.push_back(5.0F);
+      line.y.push_back(0.02F * static_cast<float>(n));
+      line.z.push_back(0.0F);
+    }
+    line.measure();
+    for (int n = 1; n + 1 < count; ++n) {
+      const LineEdge edge = locateEdge(line, n, kNoise);
+      EXPECT_EQ(inPlane(edge.position), pointAt(line, n));
+      EXPECT_EQ(edge.middle(), n);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
