@@ -15,13 +15,16 @@ constexpr float kStep = 0.05F;
 constexpr float kThin = 0.4F;
 
 /// The middle of something is behind what is seen of it by A / (2 W), A being the area of its section and W the width
-/// that is seen: 0.39 W for what is round, 0.25 W to 0.5 W for square posts, less for flat ones. Far away, only those
-/// of which two beams happened to hit are seen at all, and they look wider than they are: with 0.3 W the highway's rate
-/// comes to 0.059, 0.090 and 0.041 instead of 0.050, 0.087 and 0.032 %.
+/// that is seen: 0.39 W for what is round, 0.25 W to 0.5 W for square posts, less for flat ones. Far away, only posts
+/// that at least two beams happened to hit become edges, and look wider than they are: with 0.3 W the highway's rate
+/// comes to 0.059, 0.090 and 0.041 instead of 0.050, 0.087 and 0.032 % (seeds 21 to 23, an edge counting 0.06).
 constexpr float kAxisBehind = 0.25F;
 
-/// rad; neighbours farther apart than this have lost returns between them.
+/// rad; neighbours farther apart than this have lost returns between them: behind the surface there is nothing.
 constexpr float kNextBeam = 0.02F;
+
+/// m; an edge is not moved by more. Far away, points are metres apart.
+constexpr float kFarthestMove = 0.4F;
 
 /// Points from which the spacing at the end of a surface is taken.
 constexpr int kForSpacing = 3;
@@ -29,7 +32,8 @@ constexpr int kForSpacing = 3;
 /// Points on each side from which the corner of two surfaces is taken.
 constexpr int kForCorner = 4;
 
-/// Cosine of the angle below which two surfaces are one: the corner would be anywhere along it.
+/// Cosine of the angle between two surfaces, above which they nearly go on or fold back: where lines through them meet
+/// is then anywhere along them.
 constexpr float kFlatCorner = 0.75F;
 
 Eigen::Vector3f pointAt(const LinePoints& line, int n)
@@ -47,8 +51,8 @@ float angleBetween(const LinePoints& line, int a, int b)
 /// What is next to the last point of a surface.
 enum class Border {
   none,    ///< the same surface: it was not followed to its end
-  behind,  ///< something farther: the surface ends here
-  before   ///< something nearer, which may hide more of it, or the end of the scan line
+  behind,  ///< something farther, or nothing: the surface ends here
+  before   ///< something nearer, which may hide more of it, or the end of the scan line, behind which it may go on
 };
 
 /// A surface on one side of a point.
@@ -69,7 +73,8 @@ Border borderBetween(const LinePoints& line, int inner, int outer, float noise)
   if (line.squared_step[std::min(i, o)] < limit * limit) {
     return Border::none;
   }
-  return line.range[o] > line.range[i] ? Border::behind : Border::before;
+  const bool is_farther = line.range[o] > line.range[i];
+  return is_farther || angleBetween(line, inner, outer) > kNextBeam ? Border::behind : Border::before;
 }
 
 /// Follows the surface of point \p n until it ends, or is more than thin.
@@ -121,7 +126,8 @@ Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& othe
   if (steps == 0) {
     return last;
   }
-  return last + 0.5F / static_cast<float>(steps) * (last - pointAt(line, side.last - side.outward * steps));
+  const Eigen::Vector3f step = (last - pointAt(line, side.last - side.outward * steps)) / static_cast<float>(steps);
+  return 0.5F * step.norm() < kFarthestMove ? Eigen::Vector3f(last + 0.5F * step) : last;
 }
 
 struct StraightLine {
@@ -154,7 +160,7 @@ Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const 
   const StraightLine a = lineThrough(line, first, n - 1);
   const StraightLine b = lineThrough(line, n + 1, last);
   const float cosine = a.direction.dot(b.direction);
-  if (std::abs(cosine) > kFlatCorner) {
+  if (a.direction.isZero() || b.direction.isZero() || std::abs(cosine) > kFlatCorner) {
     return point;
   }
   // In the middle between the points where the two are nearest to each other.
@@ -166,8 +172,8 @@ Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const 
   const Eigen::Vector3f on_b = b.center + scale * (cosine * along_a - along_b) * b.direction;
   const Eigen::Vector3f corner = 0.5F * (on_a + on_b);
   const auto k = static_cast<std::size_t>(n);
-  const float farthest = std::max(line.squared_step[k - 1], line.squared_step[k]);
-  return (corner - point).squaredNorm() <= farthest ? corner : point;
+  const float step = std::max(line.squared_step[k - 1], line.squared_step[k]);
+  return (corner - point).squaredNorm() <= std::min(step, kFarthestMove * kFarthestMove) ? corner : point;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`. That of a few edges is no greater than that of many planes.
+/// parameters' `kernel_scale`. That of fewer than 40 edges is no greater than that of 40 or more planes.
 [[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
                                              const Correspondences& correspondences);
 

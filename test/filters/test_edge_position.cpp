@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <random>
 #include <vector>
 
 namespace pcl_floam::test {
@@ -136,7 +137,8 @@ TEST(EdgePosition, APostIsTakenByItsAxisWhicheverOfItsPointsIsAsked)
       EXPECT_NEAR(inPlane(edge.position).y(), center.y(), 0.55 * 0.0035 * center.x()) << "half a beam";
       mean += inPlane(edge.position) / kPhases;
     }
-    EXPECT_NEAR(mean.x(), center.x(), 0.35 * radius) << "the nearest point of the surface is a whole radius away";
+    EXPECT_NEAR(mean.x(), center.x(), 0.35 * radius) << "the nearest point of the surface is a whole radius away; the "
+                                                        "same for round and square posts is a compromise";
     EXPECT_NEAR(mean.y(), center.y(), 0.002);
   }
 }
@@ -144,7 +146,6 @@ TEST(EdgePosition, APostIsTakenByItsAxisWhicheverOfItsPointsIsAsked)
 TEST(EdgePosition, AThinThingIsInTheSamePlaceFromAllSides)
 {
   const double side = 0.12;
-  const Eigen::Vector2d center = Eigen::Vector2d::Zero();
   for (const double turn : {0.0, 0.3, 0.6}) {
     double worst = 0.0;
     double raw = 0.0;
@@ -152,7 +153,7 @@ TEST(EdgePosition, AThinThingIsInTheSamePlaceFromAllSides)
       const double angle = 2.0 * kPi * i / 36;
       // The post is turned instead of the sensor.
       const Eigen::Vector2d place(8.0, 0.0);
-      const LinePoints line = seenBy(Fan(), walls(squarePost(place + center, side, turn - angle)));
+      const LinePoints line = seenBy(Fan(), walls(squarePost(place, side, turn - angle)));
       const std::vector<int> seen = foreground(line);
       const LineEdge edge = locateEdge(line, seen.front(), kNoise);
       worst = std::max(worst, (inPlane(edge.position) - place).norm());
@@ -238,26 +239,56 @@ TEST(EdgePosition, WhatIsPartlyHiddenIsNotTakenForThin)
 TEST(EdgePosition, APostBeforeTheSkyIsTakenByItsAxisUnlessOneBeamAloneHitIt)
 {
   const Eigen::Vector2d center(10.0, 0.0);
-  const auto lineWith = [&](double radius) {
+  const auto lineWith = [&](double radius, float beside) {
     Fan fan;
     fan.phase = 0.5;
     LinePoints line = seenBy(fan, roundPost(center, radius, false));
-    // What else the scan line sees is far to the sides.
-    for (const auto& [x, y] : {std::pair{10.0F, -5.0F}, std::pair{10.0F, 5.0F}}) {
-      const auto at = y < 0.0F ? line.x.begin() - line.x.begin() : static_cast<std::ptrdiff_t>(line.x.size());
-      line.x.insert(line.x.begin() + at, x);
-      line.y.insert(line.y.begin() + at, y);
-      line.z.insert(line.z.begin() + at, 0.0F);
-    }
+    // What else the scan line sees is far to the sides, nearer or farther.
+    line.x.insert(line.x.begin(), beside);
+    line.y.insert(line.y.begin(), -0.5F * beside);
+    line.z.insert(line.z.begin(), 0.0F);
+    line.x.push_back(beside);
+    line.y.push_back(0.5F * beside);
+    line.z.push_back(0.0F);
     line.measure();
     return line;
   };
-  const LinePoints several = lineWith(0.1);
-  ASSERT_GT(several.size(), 4);
-  EXPECT_LT((inPlane(locateEdge(several, 1, kNoise).position) - center).norm(), 0.05);
-  const LinePoints one = lineWith(0.02);
-  ASSERT_EQ(one.size(), 3);
-  EXPECT_EQ(inPlane(locateEdge(one, 1, kNoise).position), pointAt(one, 1));
+  for (const float beside : {5.0F, 15.0F}) {
+    const LinePoints several = lineWith(0.1, beside);
+    ASSERT_GT(several.size(), 4);
+    EXPECT_LT((inPlane(locateEdge(several, 1, kNoise).position) - center).norm(), 0.06);
+    const LinePoints one = lineWith(0.02, beside);
+    ASSERT_EQ(one.size(), 3);
+    EXPECT_EQ(inPlane(locateEdge(one, 1, kNoise).position), pointAt(one, 1));
+  }
+}
+
+TEST(EdgePosition, PointsInOnePlaceTellNoDirection)
+{
+  LinePoints line;
+  for (const float y : {-0.2F, -0.15F, -0.1F, -0.05F, 0.0F, 0.05F, 0.1F, 0.1F, 0.1F, 0.1F, 0.1F}) {
+    line.x.push_back(5.0F);
+    line.y.push_back(y);
+    line.z.push_back(0.0F);
+  }
+  line.measure();
+  for (int n = 1; n + 1 < line.size(); ++n) {
+    EXPECT_EQ(inPlane(locateEdge(line, n, kNoise).position), pointAt(line, n)) << n;
+  }
+}
+
+TEST(EdgePosition, NothingIsMovedFar)
+{
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> depth(0.95F, 1.0F);
+  for (int i = 0; i < 300; ++i) {
+    const LinePoints line = seenBy(Fan(), [&](const Eigen::Vector2d& /*origin*/, const Eigen::Vector2d& /*ray*/) {
+      return std::optional<double>(100.0 * static_cast<double>(depth(random)));
+    });
+    for (int n = 1; n + 1 < line.size(); ++n) {
+      EXPECT_LE((inPlane(locateEdge(line, n, kNoise).position) - pointAt(line, n)).norm(), 0.4 + 1e-4);
+    }
+  }
 }
 
 TEST(EdgePosition, TheEndsOfAScanLineAreRespected)

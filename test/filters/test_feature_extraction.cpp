@@ -123,24 +123,37 @@ TEST(FeatureExtraction, APostIsOneEdgeAScanLineAtItsAxis)
   EXPECT_GT(rings.size(), 20U);
 }
 
-TEST(FeatureExtraction, AnEdgeThatWasAskedForIsSaidToBeAtAPointThatWasAskedFor)
+TEST(FeatureExtraction, AnEdgeIsAtAPointThatWasAskedForAndHasTheTimeOfItsMiddle)
 {
-  const auto cloud = scanOf(Room());
-  auto every_second_column = pcl::make_shared<pcl::Indices>();
+  // A post of nine columns and more, of which the inner ones are not asked for.
+  Room room;
+  room.walls = {{-30.0, -30.0, -30.0}, {30.0, 30.0, 30.0}};
+  room.furniture = {{{2.9, 0.9, -30.0}, {3.1, 1.1, 30.0}}};
+  const auto cloud = scanOf(room);
+  const double middle = std::atan2(1.0, 3.0);
+  const auto offMiddle = [&](const PointXYZIRT& point) { return std::abs(std::atan2(point.y, point.x) - middle); };
+  auto outer = pcl::make_shared<pcl::Indices>();
   for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if (i / 32 % 2 == 0) {  // 32 points a column
-      every_second_column->push_back(static_cast<int>(i));
+    if (offMiddle((*cloud)[i]) > 0.02) {
+      outer->push_back(static_cast<int>(i));
     }
   }
   FeatureSet features;
   Extraction extraction;
   extraction.setInputCloud(cloud);
-  extraction.setIndices(every_second_column);
+  extraction.setIndices(outer);
   ASSERT_TRUE(extraction.extract(features));
-  EXPECT_GT(features.edges.size(), 50U);
+  std::set<int> rings;
   for (const Feature& edge : features.edges) {
-    EXPECT_EQ(edge.index / 32 % 2, 0);
+    if (std::abs(std::atan2(edge.y, edge.x) - middle) > 0.1) {
+      continue;
+    }
+    const PointXYZIRT& point = (*cloud)[static_cast<std::size_t>(edge.index)];
+    EXPECT_GT(offMiddle(point), 0.02);
+    EXPECT_GT(std::abs(edge.time - point.time / 0.1F), 0.02F / 6.3F);
+    EXPECT_TRUE(rings.insert(point.ring).second) << "one edge a scan line";
   }
+  EXPECT_GT(rings.size(), 20U);
 }
 
 TEST(FeatureExtraction, NothingOnTheFarSideOfADepthStepIsAnEdge)

@@ -330,6 +330,14 @@ TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsNoGreaterThanThatOfThePlanes)
   EXPECT_NEAR(scalesWith(40, 500).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so many speak for themselves";
   EXPECT_NEAR(scalesWith(39, 39).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so few planes are no measure either";
   EXPECT_NEAR(scalesWith(0, 500).edge, smallest, 1e-9);
+
+  // Good edges among bad planes keep their own.
+  Correspondences correspondences = Scan(trajectory_, 0.0, 10, 500).along(trajectory_);
+  for (auto& c : correspondences.planes) {
+    c.factor.center += 0.5 * c.factor.normal;
+  }
+  EXPECT_NEAR(adaptKernelScales(problem_, correspondences).edge, smallest, 1e-9);
+  EXPECT_NEAR(adaptKernelScales(problem_, correspondences).plane, 3.0 * 1.4826 * 0.5, 1e-6);
 }
 
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)

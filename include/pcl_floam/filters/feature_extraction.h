@@ -19,7 +19,7 @@ namespace pcl_floam {
 /// extraction.setFeatureKind(pcl_floam::FeatureKind::edge);
 /// extraction.filter(edges);            // or filter(indices)
 /// \endcode
-/// or, for both kinds in one pass with smoothness and time, by extract().
+/// or, for both kinds with smoothness, time and the edges' own places beside their points, by extract().
 ///
 /// With indices set, features are chosen among them, while all points of the cloud serve as neighbours. With
 /// `setNegative(true)` the finite points that are no such feature are selected. Points that are not finite are

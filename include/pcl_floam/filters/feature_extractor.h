@@ -29,7 +29,7 @@ template <typename Indices>
 
 /// Extracts the edge set E_k and the plane set S_k of a scan (the paper's "Sensor Model and Feature Extraction").
 ///
-/// Edges are the points of highest smoothness in each sector of each scan line, planes those of lowest
+/// Edges are at the points of highest smoothness in each sector of each scan line, planes are those of lowest
 /// smoothness, spread evenly over the sector. Points on the far side of a depth step (whose place depends on
 /// what hides them), points on surfaces seen at grazing incidence, and points out of range are left out.
 ///

@@ -9,15 +9,15 @@ namespace pcl_floam {
 
 /// A point of a scan that was found to lie on an edge or on a plane.
 ///
-/// A plane feature is at that point. An edge feature is at the edge: where the surface ends or meets the next one, or
-/// at the axis of something thin. See locateEdge() in the sources.
+/// A plane is at its point. An edge is near it: where the surface ends or meets the next one, or at the axis of
+/// something thin, with the time of the middle of what was seen of that.
 struct Feature {
   float x = 0.0F;  ///< m, in the sensor's frame
   float y = 0.0F;
   float z = 0.0F;
   float time = 0.0F;        ///< fraction of the sweep, in [0,1]
   float smoothness = 0.0F;  ///< sigma of Eq. 1, m
-  std::int32_t index = -1;  ///< of the point in its cloud
+  std::int32_t index = -1;  ///< of the point in its cloud; of an edge, the sharpest
 };
 
 /// The feature sets E_k and S_k of one scan.
