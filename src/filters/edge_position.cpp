@@ -126,7 +126,7 @@ std::optional<LineEdge> axisOf(const LinePoints& line, const Side& left, const S
 /// Half a step beyond the last point of a surface, whose \p other side has the points before it.
 Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& other)
 {
-  const Eigen::Vector3f last = pointAt(line, side.last);
+  Eigen::Vector3f last = pointAt(line, side.last);
   const int steps = std::min(kForSpacing, std::abs(other.last - side.last));
   if (steps == 0) {
     return last;
@@ -156,7 +156,7 @@ StraightLine lineThrough(const LinePoints& line, int first, int last)
 /// Where the surfaces on both sides of point \p n meet; the point itself where that is not clear.
 Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const Side& right)
 {
-  const Eigen::Vector3f point = pointAt(line, n);
+  Eigen::Vector3f point = pointAt(line, n);
   const int first = std::max(left.last, n - kForCorner);
   const int last = std::min(right.last, n + kForCorner);
   if (n - first < 2 || last - n < 2) {
