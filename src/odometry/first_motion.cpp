@@ -1,6 +1,5 @@
 #include "odometry/first_motion.h"
 
-#include "odometry/young_map.h"
 #include "registration/feature_sampling.h"
 
 #include <pcl_floam/filters/sweep_motion.h>
@@ -111,7 +110,7 @@ private:
   {
     constexpr double kNear = 0.1;           // m per period
     constexpr double kNearlyTurned = 0.02;  // rad per period
-    Candidate fine = refined(start.twist, forYoungMap(parameters_.registration), Features::all);
+    Candidate fine = refined(start.twist, parameters_.registration, Features::all);
     const Vector6 change = fine.twist - start.twist;
     if (!fine.report.hasConverged() || change.head<3>().norm() > kNear || change.tail<3>().norm() > kNearlyTurned) {
       return start;

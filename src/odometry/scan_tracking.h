@@ -8,7 +8,6 @@
 #include "odometry/scan_sample.h"
 #include "odometry/stopwatch.h"
 #include "odometry/vertical_correction.h"
-#include "odometry/young_map.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
 #include <pcl_floam/filters/sweep_motion.h>
@@ -151,9 +150,7 @@ struct OdometryPipeline::Impl {
     run.sweep = motion.sweepModel(guess);
     run.spread_features = !prior_map && keyframes < kYoungMap;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    const bool young = !prior_map && keyframes < kFirstKeyframes;
-    return registerFeatures(measured, target, run,
-                            young ? forYoungMap(parameters.registration) : parameters.registration);
+    return registerFeatures(measured, target, run, parameters.registration);
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
