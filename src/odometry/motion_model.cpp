@@ -19,6 +19,12 @@ Matrix6 turned(const Eigen::Matrix3d& rotation, const Matrix6& covariance)
   return turn * covariance * turn.transpose();
 }
 
+/// The pose's covariance.
+Matrix6 inSensorAxes(const RegistrationReport& registration)
+{
+  return turned(registration.target_T_source.rotation.transpose(), registration.covariance);
+}
+
 }  // namespace
 
 void MotionModel::begin(const SE3& pose)
@@ -26,6 +32,7 @@ void MotionModel::begin(const SE3& pose)
   pose_ = tracked_pose_ = pose;
   tracked_twist_.reset();
   turn_ = SweepTurn();
+  sweep_velocity_.begin(Vector6::Zero());
   drift_ = UnseenDrift();
   pose_covariance_.setZero();
   periods_since_tracked_ = 0.0;
@@ -55,6 +62,7 @@ double MotionModel::compensatedFraction() const
 void MotionModel::setFirst(const SE3& first_pose, const Vector6& twist)
 {
   velocity_.set(twist);
+  sweep_velocity_.begin(twist);
   pose_ = tracked_pose_ = first_pose;
   assumeSweep(compensatedFraction() * twist);
   tracked_twist_ = compensatedFraction() > 0.0 ? std::optional<Vector6>(twist) : std::nullopt;
@@ -134,13 +142,16 @@ void MotionModel::updateSweep(const RegistrationReport& registration, const Vect
     sweep_ = SweepMotion(registration.sweep_twist, kReference, registration.sweep_acceleration);
     refined_sweep_ = sweep_;
   }
-  if (was_known && sweepIsEstimated() && periods_since_tracked_ > 0.0) {
-    refined_sweep_ =
-        turn_.refine(sweep_, sweep_fraction_, twistTo(registration.target_T_source), periods_since_tracked_);
-  }
   tracked_twist_.reset();
   if (was_known && compensatedFraction() > 0.0) {
-    tracked_twist_ = refined_sweep_.twist() / sweep_fraction_;
+    tracked_twist_ = sweep_.twist() / sweep_fraction_;
+  }
+  if (was_known && sweepIsEstimated() && periods_since_tracked_ > 0.0) {
+    const Vector6 between = twistTo(registration.target_T_source);
+    refined_sweep_ =
+        sweep_velocity_.refine(sweep_, inSensorAxes(registration), sweep_fraction_, between, periods_since_tracked_);
+    const Eigen::Vector3d turn = tracked_twist_->tail<3>();
+    tracked_twist_->tail<3>() = turn_.refine(turn, between.tail<3>(), periods_since_tracked_);
   }
 }
 
@@ -148,6 +159,7 @@ void MotionModel::updateVelocity(const Vector6& measured, const RegistrationRepo
 {
   if (!velocity_.isKnown()) {
     velocity_.set(measured);
+    sweep_velocity_.begin(measured);
     return;
   }
   if (mode_ != CompensationMode::continuous) {
@@ -156,8 +168,8 @@ void MotionModel::updateVelocity(const Vector6& measured, const RegistrationRepo
     velocity_.set(measured);
     return;
   }
-  const Matrix6 covariance = turned(registration.target_T_source.rotation.transpose(), registration.covariance);
-  const Vector6 change = velocity_.observe(measured, covariance, velocity_noise_.variance(), periods_since_tracked_);
+  const Vector6 change =
+      velocity_.observe(measured, inSensorAxes(registration), velocity_noise_.variance(), periods_since_tracked_);
   velocity_noise_.observe(change, periods_since_tracked_);
 }
 

@@ -4,6 +4,7 @@
 
 #include "odometry/constant_velocity.h"
 #include "odometry/sweep_turn.h"
+#include "odometry/sweep_velocity.h"
 #include "odometry/unseen_drift.h"
 
 #include <pcl_floam/filters/motion_compensation_mode.h>
@@ -99,6 +100,7 @@ private:
   PredictionError prediction_error_;
   VelocityNoise velocity_noise_;
   SweepTurn turn_;
+  SweepVelocity sweep_velocity_;
   UnseenDrift drift_;
   SE3 pose_;                                   ///< last scan, tracked or predicted
   SE3 tracked_pose_;                           ///< last tracked scan

@@ -4,27 +4,20 @@
 
 namespace pcl_floam {
 
-SweepMotion SweepTurn::refine(const SweepMotion& registered, double sweep_fraction, const Vector6& between,
-                              double periods)
+Eigen::Vector3d SweepTurn::refine(const Eigen::Vector3d& during, const Eigen::Vector3d& between, double periods)
 {
   constexpr double kRegular = 0.3;  // periods that scans may be early or late
-  const Turn now{registered.twist().tail<3>() / sweep_fraction, between.tail<3>()};
   if (!(std::abs(periods - 1.0) < kRegular)) {
     last_.reset();
-    return registered;
+    return during;
   }
-  Vector6 twist = registered.twist();
-  Vector6 acceleration = registered.acceleration();
+  Eigen::Vector3d refined = during;
   if (last_) {
-    const Eigen::Matrix3d now_R_last = expSO3(now.between).transpose();
-    const Eigen::Vector3d during = now_R_last * last_->during;
-    const Eigen::Vector3d before = now_R_last * last_->between;
-    twist.tail<3>() = sweep_fraction * (0.7 * now.during - 0.6 * during + 0.75 * now.between + 0.15 * before);
-    acceleration.tail<3>() =
-        sweep_fraction * sweep_fraction * (1.6 * now.during - 1.2 * during - 0.8 * now.between + 0.4 * before);
+    const Eigen::Matrix3d now_R_last = expSO3(between).transpose();
+    refined = 0.7 * during - 0.6 * (now_R_last * last_->during) + 0.75 * between + 0.15 * (now_R_last * last_->between);
   }
-  last_ = now;
-  return SweepMotion(twist, registered.reference(), acceleration);
+  last_ = Turn{during, between};
+  return refined;
 }
 
 }  // namespace pcl_floam
