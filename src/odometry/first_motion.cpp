@@ -204,6 +204,7 @@ private:
     run.guess_uncertainty = uncertainty;
     run.threads = parameters_.threads;
     run.spread_features = features == Features::spread;
+    run.sparse_target = true;
     run.sweep.twist = sweep_twist;
     run.sweep.reference = scans_.reference;
     const FeatureTarget target{&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)};

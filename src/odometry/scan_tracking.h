@@ -148,7 +148,7 @@ struct OdometryPipeline::Impl {
     run.guess_uncertainty = motion.predictionBound();
     run.threads = parameters.threads;
     run.sweep = motion.sweepModel(guess);
-    run.spread_features = !prior_map && keyframes < kYoungMap;
+    run.spread_features = run.sparse_target = !prior_map && keyframes < kYoungMap;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     return registerFeatures(measured, target, run, parameters.registration);
   }

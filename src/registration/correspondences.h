@@ -48,6 +48,7 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
+  bool sparse_target = false;  ///< as in \ref RegistrationRun
 };
 
 /// Moves the features along the trajectory, and finds the line of each edge and the plane of each plane feature.

@@ -56,7 +56,7 @@ public:
       : source_(source),
         on_iteration_(run.on_iteration),
         model_(localModel(run)),
-        problem_{target, parameters, run.guess.translation, run.threads},
+        problem_{target, parameters, run.guess.translation, run.threads, run.sparse_target},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),

@@ -31,6 +31,9 @@ struct RegistrationRun {
   /// Where there are more features than `max_features`, those of crowded places are thinned first if enough are left,
   /// so that near things, which may move, don't outweigh the rest.
   bool spread_features = false;
+  /// Of few scans a target has single scan lines, where the nearest points of a plane are all on one line. Then more of
+  /// them are looked at, so that a floor holds the height.
+  bool sparse_target = false;
   /// Called before each iteration with the present pose, if set.
   std::function<void(const SE3& target_T_source)> on_iteration;
 };
