@@ -56,7 +56,7 @@ public:
       : source_(source),
         on_iteration_(run.on_iteration),
         model_(localModel(run)),
-        problem_{target, parameters, run.guess.translation, run.threads, run.sparse_target},
+        problem_{target, parameters, run.guess.translation, run.threads, run.guess_uncertainty, run.sparse_target},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
@@ -151,6 +151,7 @@ private:
       report_.termination = Termination::degenerate;
       return true;
     }
+    problem_.uncertainty *= 0.5;
     trajectory_ = trajectory_.perturbed(step.pose, step.twist);
     if (model_.freedom == SweepFreedom::follows_pose) {
       trajectory_ = startOf(model_, trajectory_.pose());

@@ -425,5 +425,51 @@ TEST(SparseTarget, FloorsOfFewScanLinesHoldTheHeight)
   }
 }
 
+/// A smooth corridor, the frames of four doors, and a cart somewhere ahead.
+FeatureSet corridorWithDoors(unsigned seed, float cart)
+{
+  FeatureSet features = corridorWithFewLines(seed);
+  for (const float along : {-4.0F, -3.0F, 2.0F, 3.0F}) {
+    for (float height = -0.6F; height < 0.7F; height += 0.2F) {
+      Feature feature;
+      feature.x = along;
+      feature.y = along > 0.0F ? 1.1F : -1.1F;
+      feature.z = height;
+      features.edges.push_back(feature);
+    }
+  }
+  for (const float across : {-0.2F, 0.2F}) {
+    for (const float height : {-0.4F, 0.0F, 0.4F}) {
+      Feature feature;
+      feature.x = cart;
+      feature.y = across;
+      feature.z = height;
+      features.planes.push_back(feature);
+    }
+  }
+  return features;
+}
+
+TEST(FewEdges, HoldThePoseOnceTheyAgreeThatItIsOff)
+{
+  KeyframeVoxelMap map;
+  map.insert(corridorWithDoors(1, 5.0F), SE3());
+  const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
+  RegistrationRun run;
+  run.sparse_target = true;
+  run.guess.translation = Eigen::Vector3d(0.3, 0.0, 0.0);  // with it the cart, which has moved, is where it was
+  const auto errorAlong = [&](unsigned seed) {
+    FeatureSet scan = corridorWithDoors(seed, 4.7F);
+    scan.planes.resize(scan.planes.size() - 2);  // a part of the cart is enough
+    return std::abs(registerFeatures(scan, target, run, {}).target_T_source.translation.x());
+  };
+  for (unsigned seed = 2; seed < 7; ++seed) {
+    run.guess_uncertainty = 0.4;
+    EXPECT_LT(errorAlong(seed), 0.02);
+    run.guess_uncertainty = 0.0;  // the guess is said to be good: 30 cm off, the edges must be wrong
+    EXPECT_GT(errorAlong(seed), 0.2);
+  }
+}
+
 }  // namespace
 }  // namespace pcl_floam::test

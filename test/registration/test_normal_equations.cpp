@@ -330,6 +330,9 @@ TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsNoGreaterThanThatOfThePlanes)
   EXPECT_NEAR(scalesWith(40, 500).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so many speak for themselves";
   EXPECT_NEAR(scalesWith(39, 39).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so few planes are no measure either";
   EXPECT_NEAR(scalesWith(0, 500).edge, smallest, 1e-9);
+  problem_.uncertainty = 0.3;
+  EXPECT_NEAR(scalesWith(2, 500).edge, 0.3, 1e-9) << "the pose may be off by as much";
+  problem_.uncertainty = 0.0;
 
   // Good edges among bad planes keep their own.
   Correspondences correspondences = Scan(trajectory_, 0.0, 10, 500).along(trajectory_);
