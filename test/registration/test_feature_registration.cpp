@@ -471,5 +471,22 @@ TEST(FewEdges, HoldThePoseOnceTheyAgreeThatItIsOff)
   }
 }
 
+TEST(FewEdges, ThatAreWrongDoNotDrawThePoseAway)
+{
+  KeyframeVoxelMap map;
+  map.insert(corridorWithDoors(1, 5.0F), SE3());
+  const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
+  RegistrationRun run;
+  run.sparse_target = true;
+  run.guess_uncertainty = 0.4;
+  for (unsigned seed = 2; seed < 7; ++seed) {
+    FeatureSet scan = corridorWithDoors(seed, 5.0F);
+    for (Feature& edge : scan.edges) {
+      edge.x += edge.x > -3.5F ? 0.3F : 0.0F;  // all doors but one are open by now
+    }
+    EXPECT_LT(std::abs(registerFeatures(scan, target, run, {}).target_T_source.translation.x()), 0.1);
+  }
+}
+
 }  // namespace
 }  // namespace pcl_floam::test
