@@ -5,26 +5,29 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 
 namespace pcl_floam {
 
 /// Kalman filters of displacement, velocity and acceleration, side by side.
 ///
-/// The acceleration is taken to change at random, and each filter has its own idea of how much: a car swerves less than
-/// a hand. How well each has foretold the measurements so far, the last few dozens above all, says what its estimate is
-/// worth (multiple-model estimation: Magill 1965), so that there is nothing to set for a platform. All that matters is
-/// how much the acceleration changes compared with the measurements' noise: how large both are is estimated, too.
+/// The acceleration is taken to change at random, and each filter has its own idea of how much: that of a car changes
+/// less than that of a sensor in the hand. How well each has predicted the measurements so far, the last few dozens
+/// above all, says what its estimate is worth (multiple-model estimation: Magill 1965), so that there is nothing to set
+/// for a platform. Only the ratio of the acceleration's change to the measurements' noise matters: their common scale
+/// is estimated, too.
 class AxisVelocity {
 public:
   /// What one scan says, in m or rad and periods.
   struct Measurement {
-    double displacement;  ///< since the last scan's pose
-    double velocity;      ///< within the sweep, at its middle
-    double variance;      ///< of the pose, up to a constant factor; > 0
+    double displacement;       ///< since the last scan's pose
+    double velocity;           ///< per period, within the sweep, at its middle
+    double variance;           ///< of the pose, > 0, up to a factor that all scans share
+    double velocity_variance;  ///< of the velocity, > 0, up to the same factor
   };
 
   /// Begins anew.
-  /// \param velocity roughly known
+  /// \param velocity per period, roughly known
   void begin(double velocity);
 
   /// \param periods since the last scan, > 0
@@ -34,25 +37,24 @@ public:
   [[nodiscard]] double acceleration() const { return mean_[2]; }  ///< per period^2
 
 private:
-  /// One filter.
   struct Filter {
     /// Displacement from the last scan's pose to where the sensor really was, velocity, acceleration.
     Eigen::Vector3d state = Eigen::Vector3d::Zero();
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    double squares = 0.0;  ///< of what was not foretold, in standard deviations
-    double spread = 0.0;   ///< sum of the logarithms of these variances
+    double squared_innovations = 0.0;  ///< sum of them, over their variances
+    double log_variances = 0.0;        ///< sum of the logarithms of the innovations' variances
 
-    void predict(const Measurement& measurement, double periods, double change);
+    void predict(const Measurement& measurement, double periods, double noise_density);
     void correct(int component, double measured, double variance);
     void forget();
   };
 
   void weigh();
 
-  static constexpr int kFilters = 15;
+  static constexpr std::size_t kFilters = 15;
   std::array<Filter, kFilters> filters_;
-  double measurements_ = 0.0;  ///< as far as they are remembered
-  bool is_new_ = true;
+  double measurements_ = 0.0;  ///< number of them, as far as they are remembered
+  double log_variance_ = 0.0;  ///< mean logarithm of the poses' variances, as far as they are remembered
   Eigen::Vector3d mean_ = Eigen::Vector3d::Zero();
 };
 

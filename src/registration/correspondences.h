@@ -48,7 +48,6 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
-  double uncertainty = 0.0;    ///< m; how far off the pose may be by now
   bool sparse_target = false;  ///< as in \ref RegistrationRun
 };
 

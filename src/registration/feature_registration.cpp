@@ -56,9 +56,10 @@ public:
       : source_(source),
         on_iteration_(run.on_iteration),
         model_(localModel(run)),
-        problem_{target, parameters, run.guess.translation, run.threads, run.guess_uncertainty, run.sparse_target},
+        problem_{target, parameters, run.guess.translation, run.threads, run.sparse_target},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
+        uncertainty_(run.guess_uncertainty),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
         edge_weights_(times(
             parameters.edge_weight,
@@ -112,7 +113,7 @@ private:
     }
     findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_, stride_,
                         correspondences_);
-    const KernelScales scales = adaptKernelScales(problem_, correspondences_);
+    const KernelScales scales = adaptKernelScales(problem_, correspondences_, uncertainty_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
     lock(problem_.parameters.locked, equations_);
     ++report_.iterations;
@@ -151,7 +152,7 @@ private:
       report_.termination = Termination::degenerate;
       return true;
     }
-    problem_.uncertainty *= 0.5;
+    uncertainty_ *= 0.5;
     trajectory_ = trajectory_.perturbed(step.pose, step.twist);
     if (model_.freedom == SweepFreedom::follows_pose) {
       trajectory_ = startOf(model_, trajectory_.pose());
@@ -238,6 +239,7 @@ private:
   RegistrationProblem problem_;
   SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin
   double search_radius_;
+  double uncertainty_;  ///< m; how far off the pose may be
   std::size_t stride_;  ///< far from the solution, every so many-th feature will do
   std::vector<double> edge_weights_;
   std::vector<double> plane_weights_;

@@ -15,9 +15,11 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`. That of fewer than 40 edges is no greater than that of 40 or more planes.
-[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
-                                             const Correspondences& correspondences);
+/// parameters' `kernel_scale`. That of fewer than 40 edges is no greater than that of 40 or more planes, or than the
+/// pose's uncertainty.
+/// \param uncertainty m; how far off the pose may be
+[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
+                                             double uncertainty = 0.0);
 
 /// Sums over all correspondences.
 ///

@@ -314,15 +314,15 @@ TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
   EXPECT_NEAR(adaptKernelScales(problem_, correspondences).plane, 3.0 * 1.4826 * 0.1, 1e-9);
 }
 
-TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsNoGreaterThanThatOfThePlanes)
+TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsThatOfThePlanesOrThePosesUncertainty)
 {
   constexpr double kEdgesOff = 0.8;
-  const auto scalesWith = [&](std::size_t edges, std::size_t planes) {
+  const auto scalesWith = [&](std::size_t edges, std::size_t planes, double uncertainty = 0.0) {
     Correspondences correspondences = Scan(trajectory_, 0.0, edges, planes).along(trajectory_);
     for (auto& c : correspondences.edges) {
       c.factor.center += kEdgesOff * c.factor.direction.unitOrthogonal();
     }
-    return adaptKernelScales(problem_, correspondences);
+    return adaptKernelScales(problem_, correspondences, uncertainty);
   };
   const double smallest = problem_.parameters.kernel_scale;
   EXPECT_NEAR(scalesWith(2, 500).edge, smallest, 1e-9);
@@ -330,9 +330,8 @@ TEST_F(NormalEquationsTest, TheScaleOfAFewEdgesIsNoGreaterThanThatOfThePlanes)
   EXPECT_NEAR(scalesWith(40, 500).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so many speak for themselves";
   EXPECT_NEAR(scalesWith(39, 39).edge, 3.0 * 1.4826 * kEdgesOff, 1e-6) << "so few planes are no measure either";
   EXPECT_NEAR(scalesWith(0, 500).edge, smallest, 1e-9);
-  problem_.uncertainty = 0.3;
-  EXPECT_NEAR(scalesWith(2, 500).edge, 0.3, 1e-9) << "the pose may be off by as much";
-  problem_.uncertainty = 0.0;
+  EXPECT_NEAR(scalesWith(2, 500, 0.3).edge, 0.3, 1e-9) << "the pose may be off by as much";
+  EXPECT_NEAR(scalesWith(2, 500, 9.0).edge, 3.0 * 1.4826 * kEdgesOff, 1e-5) << "they are not as far off as it may be";
 
   // Good edges among bad planes keep their own.
   Correspondences correspondences = Scan(trajectory_, 0.0, 10, 500).along(trajectory_);
