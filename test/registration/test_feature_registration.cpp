@@ -8,9 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <random>
 
 namespace pcl_floam::test {
 namespace {
@@ -374,124 +372,6 @@ TEST_F(MovingSweepTest, FreeMotionFarFromTheOrigin)
   const RegistrationReport there = runWith(sweep);
   EXPECT_LT(distance(to_far * near.target_T_source, there.target_T_source), 1e-3);
   EXPECT_LT((near.sweep_twist - there.sweep_twist).norm(), 1e-3);
-}
-
-/// What a lidar with few lines sees of a smooth corridor: its walls, and two lines of the floor ahead and behind.
-FeatureSet corridorWithFewLines(unsigned seed)
-{
-  std::mt19937 random(seed);
-  std::normal_distribution<float> noise(0.0F, 0.005F);
-  std::uniform_real_distribution<float> shift(0.0F, 0.1F);
-  FeatureSet features;
-  const auto add = [&features](float x, float y, float z) {
-    Feature feature;
-    feature.x = x;
-    feature.y = y;
-    feature.z = z;
-    features.planes.push_back(feature);
-  };
-  for (float along = -6.0F; along < 6.0F; along += 0.2F) {
-    for (float height = -0.5F; height < 1.0F; height += 0.25F) {
-      for (const float side : {-1.1F, 1.1F}) {
-        add(along + shift(random), side + noise(random), height + shift(random));
-      }
-    }
-  }
-  for (const float line : {-4.1F, -3.4F, 3.4F, 4.1F}) {
-    for (float across = -1.0F; across < 0.9F; across += 0.2F) {
-      add(line + noise(random), across + shift(random), -0.9F + noise(random));
-    }
-  }
-  return features;
-}
-
-TEST(SparseTarget, FloorsOfFewScanLinesHoldTheHeight)
-{
-  KeyframeVoxelMap map;
-  map.insert(corridorWithFewLines(1), SE3());
-  const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-  RegistrationRun run;
-  run.guess.translation = Eigen::Vector3d(0.0, 0.0, 0.04);
-  const auto errorInHeight = [&](unsigned seed) {
-    const RegistrationReport report = registerFeatures(corridorWithFewLines(seed), target, run, {});
-    EXPECT_TRUE(report.hasConverged());
-    return std::abs(report.target_T_source.translation.z());
-  };
-  for (unsigned seed = 2; seed < 7; ++seed) {
-    run.sparse_target = true;
-    EXPECT_LT(errorInHeight(seed), 0.01);
-    run.sparse_target = false;  // the floor's lines make no planes
-    EXPECT_GT(errorInHeight(seed), 0.03);
-  }
-}
-
-/// A smooth corridor, the frames of four doors, and a cart somewhere ahead.
-FeatureSet corridorWithDoors(unsigned seed, float cart)
-{
-  FeatureSet features = corridorWithFewLines(seed);
-  for (const float along : {-4.0F, -3.0F, 2.0F, 3.0F}) {
-    for (float height = -0.6F; height < 0.7F; height += 0.2F) {
-      Feature feature;
-      feature.x = along;
-      feature.y = along > 0.0F ? 1.1F : -1.1F;
-      feature.z = height;
-      features.edges.push_back(feature);
-    }
-  }
-  for (const float across : {-0.2F, 0.2F}) {
-    for (const float height : {-0.4F, 0.0F, 0.4F}) {
-      Feature feature;
-      feature.x = cart;
-      feature.y = across;
-      feature.z = height;
-      features.planes.push_back(feature);
-    }
-  }
-  return features;
-}
-
-TEST(FewEdges, HoldThePoseOnceTheyAgreeThatItIsOff)
-{
-  KeyframeVoxelMap map;
-  map.insert(corridorWithDoors(1, 5.0F), SE3());
-  const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-  RegistrationRun run;
-  run.sparse_target = true;
-  run.guess.translation = Eigen::Vector3d(0.3, 0.0, 0.0);  // where the cart, which has moved, would be as before
-  const auto errorAlong = [&](unsigned seed) {
-    FeatureSet scan = corridorWithDoors(seed, 4.7F);
-    scan.planes.resize(scan.planes.size() - 2);  // some of the cart: all of it would outweigh the doors
-    const RegistrationReport report = registerFeatures(scan, target, run, {});
-    EXPECT_TRUE(report.hasConverged());
-    EXPECT_TRUE(report.weak_directions.empty());
-    return std::abs(report.target_T_source.translation.x());
-  };
-  for (unsigned seed = 2; seed < 7; ++seed) {
-    run.guess_uncertainty = 0.4;
-    EXPECT_LT(errorAlong(seed), 0.02);
-    run.guess_uncertainty = 0.0;  // the guess is said to be good: 30 cm off, the edges must be wrong
-    EXPECT_GT(errorAlong(seed), 0.2);
-  }
-}
-
-TEST(FewEdges, ThatAreWrongDoNotDrawThePoseAway)
-{
-  KeyframeVoxelMap map;
-  map.insert(corridorWithDoors(1, 5.0F), SE3());
-  const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-  RegistrationRun run;
-  run.sparse_target = true;
-  run.guess_uncertainty = 0.4;
-  for (unsigned seed = 2; seed < 7; ++seed) {
-    FeatureSet scan = corridorWithDoors(seed, 5.0F);
-    for (Feature& edge : scan.edges) {
-      edge.x += edge.x > -3.5F ? 0.3F : 0.0F;  // all doors but one are open by now
-    }
-    const RegistrationReport report = registerFeatures(scan, target, run, {});
-    EXPECT_TRUE(report.hasConverged());
-    EXPECT_TRUE(report.weak_directions.empty());
-    EXPECT_LT(std::abs(report.target_T_source.translation.x()), 0.1);
-  }
 }
 
 }  // namespace
