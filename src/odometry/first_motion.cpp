@@ -15,6 +15,8 @@ namespace pcl_floam {
 
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// A motion that both scans were compensated with, and what their registration made of it.
 struct Candidate {
   Vector6 twist = Vector6::Zero();  ///< per period, estimated
@@ -22,23 +24,6 @@ struct Candidate {
 
   [[nodiscard]] int correspondences() const { return report.edge_correspondences + report.plane_correspondences; }
 };
-
-/// Features spread evenly over the scene: the start is chosen by how well these are explained.
-///
-/// With every so many-th feature instead, 11 of 38 starts among traffic at 25 m/s (simulated highways) took the traffic
-/// for the world; with these 1 of 112. What is small, as a room, needs smaller cells.
-FeatureSet sampleOf(const FeatureSet& features)
-{
-  constexpr std::size_t kEnough = 500;
-  FeatureSet sample;
-  for (const float cell : {2.0F, 1.0F, 0.5F, 0.25F}) {  // m
-    sample = {atMostPerCell(features.edges, cell, 1), atMostPerCell(features.planes, cell, 1)};
-    if (sample.edges.size() + sample.planes.size() >= kEnough) {
-      return sample;
-    }
-  }
-  return features;
-}
 
 /// Two scans a motion apart, and distorted by it: every landmark is needed, and none is good to millimetres.
 ///
@@ -62,11 +47,11 @@ public:
         parameters_(parameters),
         registration_(forTheStart(parameters.registration)),
         map_(parameters.map),
-        sample_(sampleOf(scans.second))
+        sample_(startSample(scans.second))
   {
   }
 
-  std::optional<Vector6> run(RegistrationReport& report)
+  std::optional<FirstMotion> run(RegistrationReport& report)
   {
     const Candidate start = bestStart();
     report = start.report;
@@ -78,7 +63,10 @@ public:
     if (!report.hasConverged()) {
       return std::nullopt;
     }
-    return refinedNearby(agreed, report).twist;
+    FirstMotion motion;
+    motion.twist = refinedNearby(agreed, report).twist;
+    motion.others = othersThan(motion.twist, start);
+    return motion;
   }
 
 private:
@@ -123,12 +111,11 @@ private:
   /// no motion at all, and the landmarks, distorted by metres, with nothing. So fast motions in all directions are
   /// tried, too, and one of them is taken if it explains the scans clearly better than what was found from rest
   /// (simulated highways at 25 m/s: residuals of 2.9 against 5.0 cm, say).
-  Candidate bestStart()
+  const Candidate& bestStart()
   {
     constexpr double kFarthestFromRest = 4.0;  // m
     RegistrationParameters rough = registration_;
-    const Candidate rest = tryMotion(sample_, Vector6::Zero(), kFarthestFromRest, rough);
-    std::vector<Candidate> moving;
+    tried_.push_back(tryMotion(sample_, Vector6::Zero(), kFarthestFromRest, rough));
     constexpr int kRoughIterations = 10;
     rough.max_iterations = std::min(rough.max_iterations, kRoughIterations);
     for (const double metres_per_period : {1.5, 3.0}) {
@@ -137,34 +124,62 @@ private:
         const double angle = 2.0 * M_PI * direction / kDirections;
         Vector6 twist = Vector6::Zero();
         twist.head<2>() << metres_per_period * std::cos(angle), metres_per_period * std::sin(angle);
-        moving.push_back(tryMotionAndNear(twist, rough));
+        tried_.push_back(tryMotionAndNear(twist, rough));
       }
     }
-    return better(rest, moving);
+    return bestOfTried();
   }
 
   /// Of those that link about as many features as any does, the one with the least residuals; rest, if it is one of
   /// them, unless it is clearly worse.
-  static Candidate better(const Candidate& rest, const std::vector<Candidate>& moving)
+  [[nodiscard]] const Candidate& bestOfTried() const
   {
     constexpr double kResiduals = 0.9;        // of those from rest, at most
     constexpr double kCorrespondences = 0.8;  // of the most, at least
     const auto linked = [](const Candidate& c) { return c.report.hasConverged() ? c.correspondences() : 0; };
-    int most = linked(rest);
-    for (const Candidate& candidate : moving) {
+    int most = 0;
+    for (const Candidate& candidate : tried_) {
       most = std::max(most, linked(candidate));
     }
     const auto isEligible = [&](const Candidate& c) { return most > 0 && linked(c) >= kCorrespondences * most; };
-    const Candidate* best = &rest;
-    double residual =
-        isEligible(rest) ? kResiduals * rest.report.residual_rms : std::numeric_limits<double>::infinity();
-    for (const Candidate& candidate : moving) {
-      if (isEligible(candidate) && candidate.report.residual_rms < residual) {
-        best = &candidate;
-        residual = candidate.report.residual_rms;
+    const Candidate* best = &tried_.front();
+    double residual = isEligible(*best) ? kResiduals * best->report.residual_rms : kInfinity;
+    for (std::size_t i = 1; i < tried_.size(); ++i) {
+      if (isEligible(tried_[i]) && tried_[i].report.residual_rms < residual) {
+        best = &tried_[i];
+        residual = best->report.residual_rms;
       }
     }
     return *best;
+  }
+
+  /// Of the motions that were tried, those quite different from what was found that link and fit features not much
+  /// worse than it did at first. The limits are wide: the scans that follow will tell (StartHypotheses).
+  [[nodiscard]] std::vector<Vector6> othersThan(const Vector6& found, const Candidate& found_at_first) const
+  {
+    constexpr double kMostLinked = 0.5;    // of the features; with more the start is plain
+    constexpr double kApart = 0.5;         // m per period
+    constexpr double kFewestLinked = 0.4;  // of those linked by what was found
+    constexpr double kResiduals = 3.0;     // of its residuals
+    constexpr std::size_t kMost = 8;
+    std::vector<Vector6> others;
+    const double linked = found_at_first.correspondences();
+    if (linked > kMostLinked * static_cast<double>(sample_.edges.size() + sample_.planes.size())) {
+      return others;
+    }
+    std::vector<Candidate> by_fit = tried_;
+    std::stable_sort(by_fit.begin(), by_fit.end(), [](const Candidate& a, const Candidate& b) {
+      return a.report.residual_rms < b.report.residual_rms;
+    });
+    for (const Candidate& c : by_fit) {
+      const auto isNear = [&c](const Vector6& twist) { return (twist - c.twist).head<3>().norm() < kApart; };
+      if (others.size() < kMost && c.report.hasConverged() && c.correspondences() > kFewestLinked * linked &&
+          c.report.residual_rms < kResiduals * found_at_first.report.residual_rms && !isNear(found) &&
+          std::none_of(others.begin(), others.end(), isNear)) {
+        others.push_back(c.twist);
+      }
+    }
+    return others;
   }
 
   /// Tries a motion, and what was found from it if that is near.
@@ -219,12 +234,26 @@ private:
   RegistrationParameters registration_;
   KeyframeVoxelMap map_;
   FeatureSet sample_;
+  std::vector<Candidate> tried_;  ///< rest, then fast motions
 };
 
 }  // namespace
 
-std::optional<Vector6> findFirstMotion(const FirstScans& scans, const OdometryParameters& parameters,
-                                       RegistrationReport& report)
+FeatureSet startSample(const FeatureSet& features)
+{
+  constexpr std::size_t kEnough = 500;
+  FeatureSet sample;
+  for (const float cell : {2.0F, 1.0F, 0.5F, 0.25F}) {  // m
+    sample = {atMostPerCell(features.edges, cell, 1), atMostPerCell(features.planes, cell, 1)};
+    if (sample.edges.size() + sample.planes.size() >= kEnough) {
+      return sample;
+    }
+  }
+  return features;
+}
+
+std::optional<FirstMotion> findFirstMotion(const FirstScans& scans, const OdometryParameters& parameters,
+                                           RegistrationReport& report)
 {
   return FirstMotionSearch(scans, parameters).run(report);
 }

@@ -51,6 +51,9 @@ public:
   /// The first motion is found together with the first scan's pose, once there is a second scan.
   void setFirst(const SE3& first_pose, const Vector6& twist);
 
+  /// Per period, as far as it is known.
+  [[nodiscard]] const Vector6& twist() const { return velocity_.twist(); }
+
   /// Motion Estimation (Eq. 2).
   [[nodiscard]] SE3 predictedPose() const { return pose_ * velocity_.motion(periods_); }
 

@@ -6,6 +6,7 @@
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
 #include "odometry/scan_sample.h"
+#include "odometry/start_hypotheses.h"
 #include "odometry/stopwatch.h"
 #include "odometry/vertical_correction.h"
 
@@ -67,6 +68,8 @@ struct OdometryPipeline::Impl {
   SE3 world_T_predicted;
   OdometryReport report;
   Stopwatch watch;
+  StartHypotheses starts;        ///< open for the first scans, if these are ambiguous
+  bool began_otherwise = false;  ///< than the first two scans seemed to tell
 
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
@@ -80,6 +83,9 @@ struct OdometryPipeline::Impl {
     }
     if (!motion.isKnown() && !prior_map && !findFirstMotion()) {
       return startAgain();
+    }
+    if (hasStartedOtherwise()) {
+      return finish(TrackingState::tracked);
     }
     predictMotion();
     estimatePose();
@@ -98,6 +104,7 @@ struct OdometryPipeline::Impl {
     const double periods = clock.tick(stamp);
     if (started) {
       motion.elapse(periods);
+      starts.elapse(periods);
     }
   }
 
@@ -111,6 +118,7 @@ struct OdometryPipeline::Impl {
       sweep_fraction = std::min(1.0, timing.duration / clock.period());
     }
     motion.setSweep(sweep_fraction, timing.valid());
+    starts.setSweep(sweep_fraction, timing.valid());
     report.milliseconds.scan_lines = watch.lap();
 
     pcl_floam::extractFeatures(scan, lines, timing, parameters.features, measured, {}, parameters.threads);
@@ -152,7 +160,9 @@ struct OdometryPipeline::Impl {
     run.spread_features = is_young;
     run.sparse_target = is_young;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    return registerFeatures(measured, target, run, parameters.registration);
+    // What drew the start to itself would do so again: a lorry beside the sensor did (highway with a VLP-16, seed 22).
+    const bool beside_traffic = is_young && began_otherwise;
+    return registerFeatures(beside_traffic ? startSample(measured) : measured, target, run, parameters.registration);
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -161,26 +171,46 @@ struct OdometryPipeline::Impl {
   {
     const FirstScans scans{first, measured, std::max(motion.periodsSinceTracked(), 1e-3), motion.compensatedFraction(),
                            kReference};
-    const auto twist = pcl_floam::findFirstMotion(scans, parameters, report.registration);
-    if (twist) {
-      const SweepMotion sweep(motion.compensatedFraction() * *twist, kReference);
-      const SE3 world_T_first = initial_pose * sweep.at(fractionOf(parameters.pose_instant)).inverse();
-      motion.setFirst(world_T_first, *twist);
-      placeFirstScan(sweep);
+    const auto found = pcl_floam::findFirstMotion(scans, parameters, report.registration);
+    if (found) {
+      const FirstScan first_scan{first, initial_pose, motion};
+      const StartHypothesis start = startWith(found->twist, first_scan, parameters);
+      starts = StartHypotheses();
+      starts.add(start);
+      for (const Vector6& other : found->others) {
+        starts.add(startWith(other, first_scan, parameters));
+      }
+      goOnFrom(start);
     }
     report.milliseconds.registration += watch.lap();
-    return twist.has_value();
+    return found.has_value();
   }
 
-  /// (Re)builds the map from the first scan, given its motion. Its pose at the instant of the parameters stays what it
-  /// was reported to be.
-  void placeFirstScan(const SweepMotion& sweep)
+  /// Whether the scans so far have shown that the drive began with another motion than was found.
+  bool hasStartedOtherwise()
   {
-    map.clear();
-    FeatureSet compensated;
-    compensate(first, sweep, compensated);
-    world_T_keyframe = motion.pose();
-    map.insert(compensated, world_T_keyframe);
+    if (!starts.areOpen()) {
+      return false;
+    }
+    const StartHypothesis* start = starts.track(measured, motion, typicalRange(measured), parameters);
+    report.milliseconds.registration += watch.lap();
+    if (start == nullptr) {
+      return false;
+    }
+    goOnFrom(*start);
+    began_otherwise = true;
+    report.registration = start->registration;
+    report.keyframe = start->keyframe;
+    report.reason = "the first scans' motion has turned out to be another: poses since the first one were wrong";
+    return true;
+  }
+
+  void goOnFrom(const StartHypothesis& start)
+  {
+    motion = start.motion;
+    map = start.map;
+    world_T_keyframe = start.world_T_keyframe;
+    keyframes = start.keyframes;
   }
 
   // Mapping Building & Distortion Compensation Update (Eq. 12)
@@ -221,8 +251,11 @@ struct OdometryPipeline::Impl {
   {
     started = true;
     first = measured;
+    starts = StartHypotheses();
     motion.begin(initial_pose);
-    placeFirstScan(motion.sweep());
+    map.clear();
+    map.insert(first, motion.pose());
+    world_T_keyframe = motion.pose();
     report.keyframe = true;
     report.milliseconds.map += watch.lap();
     return finish(TrackingState::initialized);
@@ -249,6 +282,7 @@ struct OdometryPipeline::Impl {
       return finish(TrackingState::not_started);
     }
     motion.carryOn();
+    starts.carryOn();
     return finish(TrackingState::predicted);
   }
 

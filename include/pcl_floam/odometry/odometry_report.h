@@ -36,7 +36,10 @@ struct StageTimes {
 /// The outcome of one call of `Odometry::track`.
 struct OdometryReport {
   TrackingState state = TrackingState::not_started;
-  std::string reason;  ///< why it was not `tracked`; empty otherwise
+  /// Why it was not `tracked`; empty otherwise, but for the scan at which the motion that the first scans were taken
+  /// with turns out to have been another: there the poses since the first one were wrong, and this one jumps. That can
+  /// only be among the first ten, where two scans did not tell how the sensor moved (fast, among traffic).
+  std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
