@@ -49,6 +49,8 @@ void describe(CLI::App& app, Arguments& arguments)
   app.add_option("--scans", arguments.scans, "Number of sweeps; default: to the end of the path")
       ->check(CLI::PositiveNumber);
   app.add_option("--start", options.start, "Seconds into the path where the first sweep begins")->capture_default_str();
+  app.add_option("--standing", options.standing,
+                 "The sensor stands, so many metres to the left of where the path is at --start");
   app.add_option("--range-noise,--noise", options.range_noise, "Range noise, standard deviation in metres")
       ->capture_default_str();
   app.add_option("--dropout", options.dropout, "Fraction of the returns lost at random")->capture_default_str();

@@ -32,6 +32,7 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.gap_from <= options.gap_to, "the gap must not end before it begins");
   check(options.beam_divergence >= 0.0 && options.beam_divergence < 0.1, "the beam must be from 0 to 0.1 rad wide");
   check(options.path >= 1 && options.path < 1000, "the path must be from 1 to 999");
+  check(!options.standing || std::isfinite(*options.standing), "the place to stand at must be finite");
   check(options.start >= 0.0, "the start must not be negative");
   check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
   return options;
@@ -100,6 +101,10 @@ double Simulation::accelerationBound() const
 
 SE3 Simulation::worldTSensor(double t) const
 {
+  if (options_.standing) {
+    const SE3 world_T_path = motion().pose(options_.start);
+    return world_T_path * SE3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, *options_.standing, 0.0)};
+  }
   return motion().pose(options_.start + t);
 }
 

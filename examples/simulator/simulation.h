@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct SimulationOptions {
   double dropout = 0.0;       ///< fraction of the returns lost at random, beside those too weak to be seen
   double rate = 10.0;         ///< sweeps a second
   double start = 0.0;         ///< s into the world's motion where sweep 0 begins: a start in motion
+  /// Instead of moving, the sensor stands so many m to the left of where the path is at the start.
+  std::optional<double> standing;
   HeadRotation rotation = HeadRotation::clockwise;
   /// Two numbers, s after the start of sweep 0: nothing returns from the one to the other. Equal: no gap.
   double gap_from = 0.0, gap_to = 0.0;

@@ -57,7 +57,7 @@ const OdometryReport& OdometryPipeline::track(const CloudView& scan, std::option
 const OdometryReport& OdometryPipeline::trackMissing(std::optional<double> stamp)
 {
   impl_->beginScan(0, stamp);
-  return impl_->predictOnly("the scan is missing");
+  return impl_->seeNothing("the scan is missing");
 }
 
 const OdometryReport& OdometryPipeline::report() const

@@ -9,7 +9,7 @@
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/registration/registration_report.h>
 
-#include <utility>
+#include <optional>
 #include <vector>
 
 namespace pcl_floam {
@@ -23,14 +23,24 @@ struct StartHypothesis {
   int keyframes = 0;
   bool keyframe = false;                 ///< whether the last scan is one
   RegistrationReport registration = {};  ///< of the last scan
-  double explained = 0.0;                ///< features so far, each by as much as it fits
+  double residual = 0.0;                 ///< m, root mean square of the last few scans
 };
 
 /// What every start has in common.
 struct FirstScan {
-  const FeatureSet& features;  ///< as measured
-  SE3 pose;                    ///< at the instant of the parameters
-  const MotionModel& motion;   ///< which does not know its velocity yet
+  FeatureSet features;  ///< as measured
+  SE3 pose;             ///< at the instant of the parameters
+  /// When the second scan has come, without a velocity yet.
+  MotionModel motion;
+};
+
+/// A scan, and when it came.
+struct NextScan {
+  FeatureSet measured;          ///< none if nothing was seen
+  double periods = 1.0;         ///< since the last one
+  double sweep_fraction = 1.0;  ///< duration of the sweep in periods
+  bool has_times = false;
+  double typical_range = 1.0;  ///< m, of the points
 };
 
 /// The first scan, given its motion: its pose at the instant of the parameters stays what it was reported to be.
@@ -45,33 +55,35 @@ struct FirstScan {
 /// it.
 class StartHypotheses {
 public:
-  /// The first one is the start that was found.
-  void add(StartHypothesis start) { starts_.push_back(std::move(start)); }
+  StartHypotheses() = default;
+
+  /// \param others than \p found that it may have been; none: nothing is open
+  StartHypotheses(FirstScan first, const StartHypothesis& found, const std::vector<Vector6>& others,
+                  const OdometryParameters& parameters);
 
   [[nodiscard]] bool areOpen() const { return starts_.size() > 1; }
 
-  /// As the motion model's.
-  void elapse(double periods);
-  void setSweep(double fraction, bool has_times);
-  void carryOn();
+  /// A scan saw nothing: each goes on as before.
+  void miss(double periods, const OdometryParameters& parameters);
 
-  /// Tracks a scan with each.
-  /// \param motion        that the odometry itself has come to with the start that was found
-  /// \param typical_range m, of the scan's points
-  /// \return the start to go on from, which has taken in the scan, if it is another one than the odometry went on from;
-  ///         else null. Then, or once enough scans were seen, none is open any more.
-  [[nodiscard]] const StartHypothesis* track(const FeatureSet& measured, const MotionModel& motion,
-                                             double typical_range, const OdometryParameters& parameters);
+  /// Tracks a scan with each; the second scan is the first of them.
+  /// \param present that the odometry itself has come to with the start that was found
+  /// \return the start to go on from, which has taken in the scan, if it is another one than the odometry went on from.
+  ///         Then, or once enough scans were seen, none is open any more.
+  [[nodiscard]] std::optional<StartHypothesis> track(NextScan scan, const MotionModel& present,
+                                                     const OdometryParameters& parameters);
 
 private:
+  void followWithEach(NextScan scan, const OdometryParameters& parameters);
   void dropThoseNearFound();
-  [[nodiscard]] const StartHypothesis* decide(const MotionModel& motion) const;
+  [[nodiscard]] const StartHypothesis* decide(const MotionModel& present) const;
   [[nodiscard]] const StartHypothesis* betterThanFound(double times) const;
   [[nodiscard]] bool isAlone(const StartHypothesis& start) const;
+  [[nodiscard]] StartHypothesis onceMore(const StartHypothesis& start, const OdometryParameters& parameters) const;
 
-  std::vector<StartHypothesis> starts_;
-  std::vector<StartHypothesis> chosen_;  ///< one at most
-  int scans_ = 0;
+  FirstScan first_{{}, SE3(), MotionModel(CompensationMode::none)};
+  std::vector<NextScan> seen_;
+  std::vector<StartHypothesis> starts_;  ///< the first is the one that was found
 };
 
 }  // namespace pcl_floam
