@@ -43,17 +43,15 @@ double updatedResidual(double residual, const RegistrationReport& registration)
   return std::sqrt(kForgetting * residual * residual + (1.0 - kForgetting) * last * last);
 }
 
-/// Whether a start can be trusted: its motion has stayed what it was, and the scans tell how far it has come. Along a
-/// way of which nothing can be seen, any motion would do.
-bool isTrustworthy(const StartHypothesis& start)
+/// Whether the scans tell how far a start has come: along a way of which nothing can be seen, any motion would do.
+bool isSeen(const StartHypothesis& start)
 {
   constexpr double kFarthestOff = 0.06;  // m, one standard deviation
-  const Vector6& twist = start.motion.twist();
   const RegistrationReport& last = start.registration;
-  if (!last.hasConverged() || !last.weak_directions.empty() || areApart(twist, start.twist)) {
+  if (!last.hasConverged() || !last.weak_directions.empty()) {
     return false;
   }
-  const Eigen::Vector3d along = (last.target_T_source.rotation * twist.head<3>()).normalized();
+  const Eigen::Vector3d along = (last.target_T_source.rotation * start.motion.twist().head<3>()).normalized();
   return along.dot(last.covariance.topLeftCorner<3, 3>() * along) < kFarthestOff * kFarthestOff;
 }
 
@@ -108,7 +106,7 @@ void follow(const NextScan& scan, bool is_second, const OdometryParameters& para
 StartHypothesis startWith(const Vector6& twist, const FirstScan& first, const OdometryParameters& parameters)
 {
   const SweepMotion sweep(first.motion.compensatedFraction() * twist, kReference);
-  StartHypothesis start{twist, first.motion, KeyframeVoxelMap(parameters.map), SE3()};
+  StartHypothesis start{first.motion, KeyframeVoxelMap(parameters.map), SE3()};
   start.motion.setFirst(first.pose * sweep.at(fractionOf(parameters.pose_instant)).inverse(), twist);
   start.world_T_keyframe = start.motion.pose();
   FeatureSet undistorted;
@@ -121,6 +119,9 @@ StartHypotheses::StartHypotheses(FirstScan first, const StartHypothesis& found, 
                                  const OdometryParameters& parameters)
     : first_(std::move(first))
 {
+  if (others.empty()) {
+    return;
+  }
   starts_.push_back(found);
   for (const Vector6& other : others) {
     starts_.push_back(startWith(other, first_, parameters));
@@ -183,7 +184,7 @@ const StartHypothesis* StartHypotheses::decide(const MotionModel& present) const
   const StartHypothesis* clear = betterThanFound(kClearly);
   const StartHypothesis& found = starts_.front();
   // The start may have been right and the odometry, which also registers crowded features, have lost it.
-  const bool was_left = isTrustworthy(found) && areApart(found.motion.twist(), present.twist());
+  const bool was_left = isSeen(found) && areApart(found.motion.twist(), present.twist());
   return clear == nullptr && was_left ? &found : clear;
 }
 
@@ -193,7 +194,7 @@ const StartHypothesis* StartHypotheses::betterThanFound(double times) const
   const StartHypothesis* best = nullptr;
   double least = times * starts_.front().residual;
   for (const StartHypothesis& start : starts_) {
-    if (start.residual < least && isTrustworthy(start)) {
+    if (start.residual < least && isSeen(start)) {
       best = &start;
       least = start.residual;
     }
@@ -209,7 +210,7 @@ StartHypothesis StartHypotheses::onceMore(const StartHypothesis& start, const Od
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     follow(seen_[i], i == 0, parameters, again);
   }
-  return again.residual < start.residual ? again : start;
+  return isSeen(again) ? again : start;
 }
 
 /// Whether none with another motion comes close.
