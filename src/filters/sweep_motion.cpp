@@ -4,6 +4,8 @@
 
 #include <pcl_floam/filters/motion_compensation_mode.h>
 
+#include <cstddef>
+
 namespace pcl_floam {
 
 const char* toString(CompensationMode mode)
@@ -32,14 +34,18 @@ double fractionOf(PoseInstant instant)
   return instant == PoseInstant::start ? 0.0 : (instant == PoseInstant::middle ? 0.5 : 1.0);
 }
 
-void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated)
+void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated,
+                int threads)
 {
   compensated = features;
   if (motion.isStill()) {
     return;
   }
   const SweepTrajectory trajectory(SE3(), motion.twist(), motion.reference(), motion.acceleration());
-  for (Feature& feature : compensated) {
+  const auto count = static_cast<std::ptrdiff_t>(compensated.size());
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t i = 0; i < count; ++i) {
+    Feature& feature = compensated[static_cast<std::size_t>(i)];
     const Eigen::Vector3d point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
     feature.x = static_cast<float>(point.x());
     feature.y = static_cast<float>(point.y());
@@ -47,10 +53,10 @@ void compensate(const std::vector<Feature>& features, const SweepMotion& motion,
   }
 }
 
-void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated)
+void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated, int threads)
 {
-  compensate(features.edges, motion, compensated.edges);
-  compensate(features.planes, motion, compensated.planes);
+  compensate(features.edges, motion, compensated.edges, threads);
+  compensate(features.planes, motion, compensated.planes, threads);
 }
 
 }  // namespace pcl_floam

@@ -4,6 +4,8 @@
 #include "map/kdtree_search.h"
 #include "map/voxel_layer.h"
 
+#include <cstddef>
+
 namespace pcl_floam {
 
 const char* toString(SearchMethod method)
@@ -37,10 +39,12 @@ struct KeyframeVoxelMap::Impl {
   static void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor,
                      int threads)
   {
-    std::vector<Eigen::Vector3d> points;
-    points.reserve(features.size());
-    for (const Feature& feature : features) {
-      points.push_back(world_T_sensor * Eigen::Vector3d(feature.x, feature.y, feature.z));
+    std::vector<Eigen::Vector3d> points(features.size());
+    const auto count = static_cast<std::ptrdiff_t>(features.size());
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (std::ptrdiff_t n = 0; n < count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      points[i] = world_T_sensor * Eigen::Vector3d(features[i].x, features[i].y, features[i].z);
     }
     layer_of_kind.insertEach(points.data(), points.size(), threads);
   }

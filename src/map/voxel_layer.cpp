@@ -194,14 +194,17 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, std::size_t count, 
     blocks[i] = blocks[i] == kNone ? findOrAddBlock(places[i].key) : blocks[i];
   }
   // Each block belongs to one thread, which takes the block's points in their order.
+  std::vector<std::int32_t> owners(count);
+  std::transform(blocks.begin(), blocks.end(), owners.begin(),
+                 [threads](std::int32_t block) { return block >= 0 ? block % threads : kNone; });
   std::size_t added = 0;
 #pragma omp parallel for num_threads(threads) schedule(static, 1) reduction(+ : added)
   for (int thread = 0; thread < threads; ++thread) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (i + kAhead < count && blocks[i + kAhead] >= 0 && blocks[i + kAhead] % threads == thread) {
+      if (i + kAhead < count && owners[i + kAhead] == thread) {
         prefetch(&blocks_[static_cast<std::size_t>(blocks[i + kAhead])], sizeof(VoxelBlock));
       }
-      if (blocks[i] >= 0 && blocks[i] % threads == thread) {
+      if (owners[i] == thread) {
         VoxelBlock& block = blocks_[static_cast<std::size_t>(blocks[i])];
         added += block.add(voxelAt(places[i].offset), places[i].offset) ? 1 : 0;
       }

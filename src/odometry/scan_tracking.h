@@ -218,7 +218,7 @@ struct OdometryPipeline::Impl {
     if (report.keyframe) {
       // The map takes the sweep as it was registered: with its turn refined (SweepTurn), the real drive of the tests
       // came to 6.1 instead of 4.9 cm.
-      compensate(measured, motion.sweep(), undistorted);
+      compensate(measured, motion.sweep(), undistorted, parameters.threads);
       report.milliseconds.compensation += watch.lap();
       forgetWhatHasGone(scan);
       map.insert(undistorted, motion.pose(), parameters.threads);

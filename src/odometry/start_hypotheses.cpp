@@ -78,7 +78,7 @@ void trackWith(const NextScan& scan, const FeatureSet& sample, const OdometryPar
   start.keyframe = parameters.keyframe.isKeyframe(start.world_T_keyframe, start.motion.pose());
   if (start.keyframe) {
     FeatureSet undistorted;
-    compensate(scan.measured, start.motion.sweep(), undistorted);
+    compensate(scan.measured, start.motion.sweep(), undistorted, parameters.threads);
     start.map.insert(undistorted, start.motion.pose(), parameters.threads);
     start.motion.enterMap();
     start.world_T_keyframe = start.motion.pose();

@@ -51,9 +51,11 @@ private:
 
 /// Re-expresses every feature at the motion's reference instant (Eq. 4, 12b).
 /// \param[out] compensated overwritten; may not be \p features itself
-void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated);
+/// \param threads         1 or more; the result does not depend on it
+void compensate(const std::vector<Feature>& features, const SweepMotion& motion, std::vector<Feature>& compensated,
+                int threads = 1);
 
 /// \copydoc compensate
-void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated);
+void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated, int threads = 1);
 
 }  // namespace pcl_floam
