@@ -124,6 +124,9 @@ private:
         const double angle = 2.0 * M_PI * direction / kDirections;
         Vector6 twist = Vector6::Zero();
         twist.head<2>() << metres_per_period * std::cos(angle), metres_per_period * std::sin(angle);
+        for (int axis = 0; axis < 3; ++axis) {
+          twist[axis] = registration_.locked[static_cast<std::size_t>(axis)] ? 0.0 : twist[axis];
+        }
         tried_.push_back(tryMotionAndNear(twist, rough));
       }
     }
@@ -164,7 +167,7 @@ private:
     constexpr std::size_t kMost = 8;
     std::vector<Vector6> others;
     const double linked = found_at_first.correspondences();
-    if (linked > kMostLinked * static_cast<double>(sample_.edges.size() + sample_.planes.size())) {
+    if (linked > kMostLinked * static_cast<double>(registered())) {
       return others;
     }
     std::vector<Candidate> by_fit = tried_;
@@ -180,6 +183,13 @@ private:
       }
     }
     return others;
+  }
+
+  /// How many features of the sample are registered (RegistrationParameters::max_features).
+  [[nodiscard]] std::size_t registered() const
+  {
+    const auto most = static_cast<std::size_t>(registration_.max_features);
+    return std::min(sample_.planes.size(), most) + std::min(sample_.edges.size(), most / 6);
   }
 
   /// Tries a motion, and what was found from it if that is near.

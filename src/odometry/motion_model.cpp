@@ -64,6 +64,7 @@ void MotionModel::setFirst(const SE3& first_pose, const Vector6& twist)
   velocity_.set(twist);
   sweep_velocity_.begin(twist);
   pose_ = tracked_pose_ = first_pose;
+  periods_ = periods_since_tracked_;  // scans between may have told nothing
   assumeSweep(compensatedFraction() * twist);
   tracked_twist_ = compensatedFraction() > 0.0 ? std::optional<Vector6>(twist) : std::nullopt;
 }

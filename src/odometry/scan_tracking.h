@@ -19,6 +19,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -162,8 +163,10 @@ struct OdometryPipeline::Impl {
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
     // Where the start was ambiguous there may be more traffic than world: a lorry beside the sensor drew a drive back
     // by 6 m (highway with an HDL-32, seed 22; 0.1 m with features that are spread further).
-    const bool among_traffic = is_young && start_was_ambiguous;
-    return registerFeatures(among_traffic ? startSample(measured) : measured, target, run, parameters.registration);
+    if (is_young && start_was_ambiguous) {
+      return registerFeatures(startSample(measured), target, run, parameters.registration);
+    }
+    return registerFeatures(measured, target, run, parameters.registration);
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -175,10 +178,12 @@ struct OdometryPipeline::Impl {
     const auto found = pcl_floam::findFirstMotion(scans, parameters, report.registration);
     if (found) {
       const FirstScan first_scan{first, initial_pose, motion};
-      const StartHypothesis start = startWith(found->twist, first_scan, parameters);
-      starts = StartHypotheses(first_scan, start, found->others, parameters);
-      start_was_ambiguous = starts.areOpen();
-      goOnFrom(start);
+      StartHypothesis start = startWith(found->twist, first_scan, parameters);
+      start_was_ambiguous = !found->others.empty();
+      if (start_was_ambiguous) {
+        starts = StartHypotheses(first_scan, start, found->others, parameters);
+      }
+      goOnFrom(std::move(start));
     }
     report.milliseconds.registration += watch.lap();
     return found.has_value();
@@ -194,18 +199,18 @@ struct OdometryPipeline::Impl {
         starts.track({measured, periods, sweep_fraction, timing.valid(), typicalRange(measured)}, motion, parameters);
     report.milliseconds.registration += watch.lap();
     if (start) {
-      goOnFrom(*start);
       report.registration = start->registration;
       report.keyframe = start->keyframe;
-      report.reason = "the first scans' motion has turned out to be another: poses since the first one were wrong";
+      report.reason = "poses since the first scan have turned out to be wrong: this one jumps";
+      goOnFrom(std::move(*start));
     }
     return start.has_value();
   }
 
-  void goOnFrom(const StartHypothesis& start)
+  void goOnFrom(StartHypothesis start)
   {
     motion = start.motion;
-    map = start.map;
+    map = std::move(start.map);
     world_T_keyframe = start.world_T_keyframe;
     keyframes = start.keyframes;
   }
@@ -248,7 +253,6 @@ struct OdometryPipeline::Impl {
   {
     started = true;
     first = measured;
-    starts = StartHypotheses();
     motion.begin(initial_pose);
     map.clear();
     map.insert(first, motion.pose());
