@@ -39,6 +39,8 @@ public:
       result_.last_read = report;
       if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
         progress_.message(scans_.path(scan).string() + ": not tracked: " + report.reason);
+      } else if (report.state == TrackingState::tracked && !report.reason.empty()) {
+        progress_.message(scans_.path(scan).string() + ": " + report.reason);
       }
     }
     return report;
