@@ -31,6 +31,14 @@ constexpr float kNothing = 0.1F;
 /// m; no end of a surface is moved by more. Far away, its points are metres apart.
 constexpr float kFarthestMove = 0.4F;
 
+/// m; along a surface that the beams graze, points are farther apart than across them, and what stands out from it near
+/// its end (a door's frame) is mostly missed: the end is nearer than half a step. So it is moved by no more than half
+/// of what the beams are apart, or by this. Moved by half a step, ends of the corridor's walls 8 to 10 m away lay 3 cm
+/// farther off than seen from beside, the map stretched with each one, and the nine drives of the seeds 21 to 29 were
+/// ahead at the end by 0.2 % in the mean, and came to 8.0 cm; with this, by 0.0 % and to 3.0. With 0.04 they come
+/// to 4.1.
+constexpr float kGrazing = 0.05F;
+
 /// Points from which the spacing at the end of a surface is taken.
 constexpr int kForSpacing = 3;
 
@@ -124,7 +132,7 @@ std::optional<LineEdge> axisOf(const LinePoints& line, const Side& left, const S
   return LineEdge{middle + kAxisBehind * width * middle.normalized(), left.last, right.last};
 }
 
-/// Half a step beyond the last point of a surface, whose \p other side has the points before it.
+/// Half a step beyond the last point of a surface, or less, whose \p other side has the points before it.
 Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& other)
 {
   Eigen::Vector3f last = pointAt(line, side.last);
@@ -133,7 +141,11 @@ Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& othe
     return last;
   }
   const Eigen::Vector3f step = (last - pointAt(line, side.last - side.outward * steps)) / static_cast<float>(steps);
-  return 0.5F * step.norm() < kFarthestMove ? Eigen::Vector3f(last + 0.5F * step) : last;
+  const float half = 0.5F * step.norm();
+  const float half_across = 0.5F * step.cross(last.normalized()).norm();
+  return half > 0.0F && half < kFarthestMove
+             ? Eigen::Vector3f(last + std::min(half, std::max(kGrazing, half_across)) / half * 0.5F * step)
+             : last;
 }
 
 struct StraightLine {

@@ -188,6 +188,27 @@ TEST(EdgePosition, ASurfaceEndsHalfAStepBehindItsLastPoint)
   EXPECT_NEAR(located, 0.0, 0.1 * std::abs(last_point));
 }
 
+/// By how much the end of a wall is moved that is the last thing seen on the right, before something far behind.
+double moveOfTheEnd(const Fan& fan, const Eigen::Vector2d& from, const Eigen::Vector2d& end)
+{
+  const LinePoints line = seenBy(fan, walls({from, end}));
+  const std::vector<int> seen = foreground(line);
+  const LineEdge edge = locateEdge(line, seen.front(), kNoise);
+  return (inPlane(edge.position) - pointAt(line, seen.front())).norm();
+}
+
+TEST(EdgePosition, TheEndOfAGrazedSurfaceIsMovedLittleThatOfOneAcrossByHalfAStep)
+{
+  Fan fan;
+  fan.from = 0.09;
+  fan.to = 0.9;
+  EXPECT_NEAR(moveOfTheEnd(fan, {1.0, 1.2}, {10.0, 1.2}), 0.05, 1e-4) << "its points are 0.3 m apart";
+  fan.from = 0.0;
+  fan.to = 0.2;
+  fan.step = 0.006;
+  EXPECT_NEAR(moveOfTheEnd(fan, {25.0, 3.0}, {25.0, 1.0}), 0.5 * 0.006 * 25.0, 1e-3) << "more than those 5 cm";
+}
+
 TEST(EdgePosition, ACornerIsWhereTwoSurfacesMeet)
 {
   const Eigen::Vector2d corner(5.0, 0.2);
