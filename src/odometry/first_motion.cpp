@@ -160,7 +160,7 @@ private:
   /// worse than it did at first. The limits are wide: the scans that follow will tell (StartHypotheses).
   [[nodiscard]] std::vector<Vector6> othersThan(const Vector6& found, const Candidate& found_at_first) const
   {
-    constexpr double kMostLinked = 0.5;    // of the features; with more the start is plain
+    constexpr double kMostLinked = 0.45;   // of the features; with more the start is plain
     constexpr double kApart = 0.5;         // m per period
     constexpr double kFewestLinked = 0.4;  // of those linked by what was found
     constexpr double kResiduals = 3.0;     // of its residuals

@@ -196,7 +196,7 @@ struct OdometryPipeline::Impl {
       return false;
     }
     const auto start =
-        starts.track({measured, periods, sweep_fraction, timing.valid(), typicalRange(measured)}, motion, parameters);
+        starts.track({measured, periods, sweep_fraction, timing.valid(), typicalRange(measured)}, parameters);
     report.milliseconds.registration += watch.lap();
     if (start) {
       report.registration = start->registration;

@@ -69,17 +69,14 @@ public:
   void miss(double periods, const OdometryParameters& parameters);
 
   /// Tracks a scan with each; the second scan is the first of them.
-  /// \param motion of the odometry itself with the start that was found, before this scan
   /// \return once enough scans were seen, when none is open any more: the start to go on from, which has taken in the
-  ///         scan, if it is another one than the odometry went on from
-  [[nodiscard]] std::optional<StartHypothesis> track(NextScan scan, const MotionModel& motion,
-                                                     const OdometryParameters& parameters);
+  ///         scan, if it is another one than was found
+  [[nodiscard]] std::optional<StartHypothesis> track(NextScan scan, const OdometryParameters& parameters);
 
 private:
   void followWithEach(NextScan scan, const OdometryParameters& parameters);
-  void dropThoseNearFound();
-  [[nodiscard]] const StartHypothesis* decide(const MotionModel& motion) const;
-  [[nodiscard]] const StartHypothesis* betterThanFound(double times) const;
+  void dropOthers();
+  [[nodiscard]] const StartHypothesis* betterThanFound() const;
   [[nodiscard]] StartHypothesis onceMore(const StartHypothesis& start, const OdometryParameters& parameters) const;
 
   FirstScan first_{{}, SE3(), MotionModel(CompensationMode::none)};
