@@ -161,7 +161,6 @@ private:
   [[nodiscard]] std::vector<Vector6> othersThan(const Vector6& found, const Candidate& found_at_first) const
   {
     constexpr double kMostLinked = 0.45;   // of the features; with more the start is plain
-    constexpr double kApart = 0.5;         // m per period
     constexpr double kFewestLinked = 0.4;  // of those linked by what was found
     constexpr double kResiduals = 3.0;     // of its residuals
     constexpr std::size_t kMost = 8;
@@ -175,7 +174,7 @@ private:
       return a.report.residual_rms < b.report.residual_rms;
     });
     for (const Candidate& c : by_fit) {
-      const auto isNear = [&c](const Vector6& twist) { return (twist - c.twist).head<3>().norm() < kApart; };
+      const auto isNear = [&c](const Vector6& twist) { return !areApart(twist, c.twist); };
       if (others.size() < kMost && c.report.hasConverged() && c.correspondences() > kFewestLinked * linked &&
           c.report.residual_rms < kResiduals * found_at_first.report.residual_rms && !isNear(found) &&
           std::none_of(others.begin(), others.end(), isNear)) {

@@ -22,14 +22,6 @@ constexpr double kClearly = 0.87;
 /// With what was missing between, so many: after that the start is left as it is.
 constexpr std::size_t kMostScansInAll = 20;
 
-/// Motions that differ by more are two, m per period.
-constexpr double kApart = 0.5;
-
-bool areApart(const Vector6& a, const Vector6& b)
-{
-  return (a - b).head<3>().norm() > kApart;
-}
-
 /// How badly the last few scans fitted, m.
 ///
 /// How many features find a surface says nothing: the map of a false motion is full of them, that of a sensor which
@@ -56,8 +48,7 @@ bool isSeen(const StartHypothesis& start)
 }
 
 /// Registers spread features of a scan in the start's own map, and adds the scan to that.
-void trackWith(const NextScan& scan, const FeatureSet& sample, const OdometryParameters& parameters,
-               StartHypothesis& start)
+void trackWith(const NextScan& scan, const OdometryParameters& parameters, StartHypothesis& start)
 {
   constexpr double kUncertainty = 0.3;  // m; at first the model allows for metres, and traffic would draw any to itself
   const SE3 predicted = start.motion.predictedPose();
@@ -68,7 +59,7 @@ void trackWith(const NextScan& scan, const FeatureSet& sample, const OdometryPar
   run.sweep = start.motion.sweepModel(predicted);
   run.sparse_target = true;
   const FeatureTarget target{&start.map.search(FeatureKind::edge), &start.map.search(FeatureKind::plane)};
-  start.registration = registerFeatures(sample, target, run, parameters.registration);
+  start.registration = registerFeatures(scan.sample, target, run, parameters.registration);
   start.keyframe = false;
   if (!start.registration.hasConverged()) {
     start.motion.carryOn();
@@ -97,7 +88,7 @@ void follow(const NextScan& scan, bool is_second, const OdometryParameters& para
     return;
   }
   start.motion.setSweep(scan.sweep_fraction, scan.has_times);
-  trackWith(scan, startSample(scan.measured), parameters, start);
+  trackWith(scan, parameters, start);
   start.residual = updatedResidual(start.residual, start.registration);
 }
 
@@ -141,6 +132,7 @@ void StartHypotheses::miss(double periods, const OdometryParameters& parameters)
 void StartHypotheses::followWithEach(NextScan scan, const OdometryParameters& parameters)
 {
   seen_ += scan.sawNothing() ? 0 : 1;
+  scan.sample = startSample(scan.measured);
   scans_.push_back(std::move(scan));
   for (StartHypothesis& start : starts_) {
     follow(scans_.back(), scans_.size() == 1, parameters, start);

@@ -37,8 +37,8 @@ struct StageTimes {
 struct OdometryReport {
   TrackingState state = TrackingState::not_started;
   /// Why it was not `tracked`, or that the sequence was started again. Of a tracked scan: that the poses since the
-  /// first scan have turned out to be wrong, and this one jumps. That can only be before the ninth scan or so with
-  /// features, where the first two did not tell how the sensor moved (fast, among traffic). Empty otherwise.
+  /// first scan have turned out to be wrong, and this one jumps. That can only be at the ninth scan with features,
+  /// where the first two did not tell how the sensor moved (fast, among traffic). Empty otherwise.
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
