@@ -15,8 +15,8 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`. That of fewer than 40 edges is no greater than that of 40 or more planes, or than the
-/// pose's uncertainty.
+/// parameters' `kernel_scale`. Beside 40 planes or more, that of the edges is no greater than that of the planes, or than
+/// the pose's uncertainty; of 40 edges or more, than three times as much.
 /// \param uncertainty m; how far off the pose may be
 [[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
                                              double uncertainty = 0.0);
