@@ -33,9 +33,9 @@ constexpr double kScalePerMedian = 3.0 * 1.4826;
 constexpr std::size_t kEnoughForSpread = 40;
 
 /// Many edges may still be a lorry's, which agree with nothing and draw the pose along. So their scale is bounded as
-/// well, so many times as wide. Highways seen by 128 scan lines (seeds 21 to 23) came to 0.164, 0.249 and 0.211 % without
-/// a bound and to 0.106, 0.148 and 0.107 with this one; those of nine highways with three sensors, in the mean, to 0.093
-/// instead of 0.123. With 1 instead of 3 two of six corridors with returns missing came to 20 cm.
+/// well, so many times as wide. Highways seen by 128 scan lines (seeds 21 to 23) came to 0.164, 0.249 and 0.211 %
+/// without a bound and to 0.106, 0.148 and 0.107 with this one; those of nine highways with three sensors, in the mean,
+/// to 0.093 instead of 0.123. With 1 instead of 3 two of six corridors with returns missing came to 20 cm.
 constexpr double kManyEdgesWidening = 3.0;
 
 /// The kernel's scale for residuals of one kind.

@@ -15,9 +15,9 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`. Beside 40 planes or more, that of the edges is no greater than that of the planes, or than
-/// the pose's uncertainty; of 40 edges or more, than three times as much.
-/// \param uncertainty m; how far off the pose may be
+/// parameters' `kernel_scale`. Beside 40 planes or more, that of the edges is no greater than that of the planes, or
+/// than the pose's uncertainty; of 40 edges or more, than three times as much. \param uncertainty m; how far off the
+/// pose may be
 [[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
                                              double uncertainty = 0.0);
 
