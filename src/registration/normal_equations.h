@@ -16,7 +16,7 @@ struct KernelScales {
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
 /// parameters' `kernel_scale`. Beside 40 planes or more, that of the edges is no greater than that of the planes, or
-/// than the pose's uncertainty; of 40 edges or more, than three times as much. \param uncertainty m; how far off the
+/// than the pose's uncertainty; of 40 edges or more, than 3.5 times as much. \param uncertainty m; how far off the
 /// pose may be
 [[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
                                              double uncertainty = 0.0);
