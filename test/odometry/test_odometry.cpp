@@ -7,7 +7,9 @@
 
 #include <array>
 #include <limits>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace pcl_floam::test {
 namespace {
@@ -149,6 +151,41 @@ TEST(Odometry, SameBitsForEveryNumberOfThreadsAndEveryRun)
   for (const int threads : {1, 2, 3, 8}) {
     EXPECT_EQ(resultOf(scans, threads), once) << threads << " threads";
   }
+}
+
+TEST(Odometry, ObjectsInThreadsOfTheirOwnDoNotDisturbEachOther)
+{
+  std::vector<Cloud> scans;
+  for (int k = 0; k < 7; ++k) {
+    scans.push_back(sweep(acceleratedPath, k));
+  }
+  const std::vector<double> alone = resultOf(scans, 1);
+  std::array<std::vector<double>, 3> together;
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < together.size(); ++i) {
+    threads.emplace_back([&scans, &result = together[i], i] { result = resultOf(scans, 1 + static_cast<int>(i % 2)); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (const std::vector<double>& result : together) {
+    EXPECT_EQ(result, alone);
+  }
+}
+
+TEST(Odometry, ThreadsMayTakeTurnsAndAMoveKeepsTheState)
+{
+  Odometry<PointXYZIRT> here;
+  Odometry<PointXYZIRT> moving;
+  for (int k = 0; k < 7; ++k) {
+    const Cloud scan = sweep(acceleratedPath, k);
+    here.track(scan);
+    std::thread([&moving, &scan] { moving.track(scan); }).join();
+    Odometry<PointXYZIRT> elsewhere(std::move(moving));
+    EXPECT_TRUE(sameBits(elsewhere.pose(), here.pose())) << "scan " << k;
+    moving = std::move(elsewhere);
+  }
+  EXPECT_EQ(moving.map().size(FeatureKind::plane), here.map().size(FeatureKind::plane));
 }
 
 TEST(Odometry, ACopyContinuesIdentically)
