@@ -34,8 +34,8 @@ constexpr std::size_t kEnoughForSpread = 40;
 
 /// Many edges may still be a lorry's, which agree with nothing and draw the pose along. So their scale is bounded as
 /// well, so many times as wide. Highways seen by 128 scan lines (seeds 21 to 23) came to 0.164, 0.249 and 0.211 %
-/// without a bound and to 0.085, 0.170 and 0.119 with this one; with 3 to 5 twelve highways of four sensors differ by
-/// 4 % in the mean. With 1 two of six corridors with returns missing came to 20 cm, and with 3 a smooth tunnel seen by
+/// without a bound and to 0.085, 0.170 and 0.118 with this one; with 3 to 5 twelve highways of four sensors differ by
+/// 5 % in the mean. With 1 two of six corridors with returns missing came to 20 cm, and with 3 a smooth tunnel seen by
 /// 128 scan lines went 1 to 5 cm across instead of 0.3.
 constexpr double kManyEdgesWidening = 3.5;
 
