@@ -299,6 +299,27 @@ TEST(Odometry, ResetStartsAnewAtAPose)
   }
 }
 
+/// In UTM coordinates, say: the same drive at the map's origin and a thousand kilometres from it. Both begin with the
+/// same heading and at a corner of a voxel; with other voxels the map keeps other points, and poses differ by 0.5 mm.
+TEST(Odometry, IsAsPreciseFarFromTheOrigin)
+{
+  const Eigen::Matrix3d heading = expSO3(Eigen::Vector3d(0.0, 0.0, 0.7));
+  const SE3 at_origin(heading, Eigen::Vector3d::Zero());
+  const SE3 far_away(heading, Eigen::Vector3d(1e6, -1e6, 100.0));
+  Odometry<PointXYZIRT> near;
+  Odometry<PointXYZIRT> far;
+  near.reset(at_origin);
+  far.reset(far_away);
+  for (int k = 0; k < kScans; ++k) {
+    const Cloud scan = sweep(acceleratedPath, k);
+    near.track(scan);
+    ASSERT_TRUE(far.track(scan).state == TrackingState::tracked || k == 0) << "scan " << k;
+    const Eigen::Vector3d difference = far.pose().translation - far_away.translation - near.pose().translation;
+    EXPECT_LT(difference.norm(), 1e-5) << "scan " << k;
+    EXPECT_LT(rotationAngle(near.pose().rotation.transpose() * far.pose().rotation), 1e-6) << "scan " << k;
+  }
+}
+
 TEST(Odometry, ASensorAtRestStaysAtRest)
 {
   Odometry<PointXYZIRT> odometry;
