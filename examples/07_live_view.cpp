@@ -62,6 +62,9 @@ try {
     auto scan = pcl::make_shared<Cloud>();
     pcl::transformPointCloud(sensed, *scan, report.world_T_sensor.matrix<float>());
     const Eigen::Vector3d& at = report.world_T_sensor.translation;
+    for (std::size_t n = 0, count = report.corrected_poses.size(); n < count; ++n) {
+      (*path)[path->size() - count + n].getVector3fMap() = report.corrected_poses[n].translation.cast<float>();
+    }
     path->push_back(pcl::PointXYZ(at.cast<float>().x(), at.cast<float>().y(), at.cast<float>().z()));
 
     if (report.keyframe) {

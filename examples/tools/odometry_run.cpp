@@ -31,6 +31,8 @@ public:
     const OdometryReport& report =
         read(scan) ? odometry_.track(viewOf(cloud_), scans_.stamp(scan)) : odometry_.trackMissing(scans_.stamp(scan));
     result_.scans.push_back(scan);
+    const std::vector<SE3>& corrected = report.corrected_poses;
+    std::copy(corrected.begin(), corrected.end(), result_.poses.end() - static_cast<std::ptrdiff_t>(corrected.size()));
     result_.poses.push_back(report.world_T_sensor);
     ++result_.states[static_cast<std::size_t>(report.state)];
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;

@@ -12,6 +12,9 @@ namespace pcl_floam::tools {
 
 namespace {
 
+constexpr const char* kKittiName = "poses.kitti.txt";
+constexpr const char* kTumName = "poses.tum.txt";
+
 const std::filesystem::path& created(const std::filesystem::path& folder)
 {
   std::error_code error;
@@ -25,8 +28,9 @@ const std::filesystem::path& created(const std::filesystem::path& folder)
 }  // namespace
 
 ResultWriter::ResultWriter(const std::filesystem::path& folder)
-    : kitti_(created(folder) / "poses.kitti.txt", TrajectoryFormat::kitti),
-      tum_(folder / "poses.tum.txt", TrajectoryFormat::tum),
+    : folder_(created(folder)),
+      kitti_(folder_ / kKittiName, TrajectoryFormat::kitti),
+      tum_(folder_ / kTumName, TrajectoryFormat::tum),
       timing_path_(folder / "timing.csv"),
       timing_(timing_path_)
 {
@@ -44,9 +48,12 @@ ResultWriter::ResultWriter(const std::filesystem::path& folder)
 
 void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& report)
 {
-  const StampedPose pose{stamp, report.world_T_sensor};
-  kitti_.write(pose);
-  tum_.write(pose);
+  if (!report.corrected_poses.empty()) {
+    correctLast(report.corrected_poses);
+  }
+  written_.push_back({stamp, report.world_T_sensor});
+  kitti_.write(written_.back());
+  tum_.write(written_.back());
   timing_ << scan;
   for (const Stage& stage : kStages) {
     timing_ << ',' << report.milliseconds.*stage.time;
@@ -55,6 +62,20 @@ void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& r
   timing_ << '\n' << std::flush;
   if (!timing_) {
     throw FileError::ofSystem(timing_path_, "cannot be written");
+  }
+}
+
+void ResultWriter::correctLast(const std::vector<SE3>& poses)
+{
+  auto last = written_.end() - static_cast<std::ptrdiff_t>(poses.size());
+  for (const SE3& pose : poses) {
+    (last++)->world_T_sensor = pose;
+  }
+  kitti_ = TrajectoryWriter(folder_ / kKittiName, TrajectoryFormat::kitti);
+  tum_ = TrajectoryWriter(folder_ / kTumName, TrajectoryFormat::tum);
+  for (const StampedPose& pose : written_) {
+    kitti_.write(pose);
+    tum_.write(pose);
   }
 }
 

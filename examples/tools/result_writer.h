@@ -8,10 +8,12 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 namespace pcl_floam::tools {
 
-/// Writes poses.kitti.txt, poses.tum.txt and timing.csv, flushed after every scan.
+/// Writes poses.kitti.txt, poses.tum.txt and timing.csv, flushed after every scan. Where poses are corrected later,
+/// both files are written again.
 class ResultWriter {
 public:
   /// Creates the folder and the files.
@@ -23,8 +25,12 @@ public:
   void write(std::size_t scan, double stamp, const OdometryReport& report);
 
 private:
+  void correctLast(const std::vector<SE3>& poses);
+
+  std::filesystem::path folder_;
   TrajectoryWriter kitti_;
   TrajectoryWriter tum_;
+  Trajectory written_;
   std::filesystem::path timing_path_;
   std::ofstream timing_;
 };

@@ -79,8 +79,8 @@ public:
   /// Motion during the present sweep, as it was registered or, without, as assumed.
   [[nodiscard]] const SweepMotion& sweep() const { return sweep_; }
 
-  /// Motion from the pose to another instant of the sweep, with all that is known of it.
-  [[nodiscard]] SE3 toInstant(double instant) const { return refined_sweep_.at(instant); }
+  /// The pose at another instant of the sweep, with all that is known of the motion during it.
+  [[nodiscard]] SE3 poseAt(double instant) const { return pose_ * refined_sweep_.at(instant); }
 
   /// Of the pose.
   [[nodiscard]] Matrix6 covariance() const { return pose_covariance_ + drift_.covariance(); }

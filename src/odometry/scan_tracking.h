@@ -201,7 +201,8 @@ struct OdometryPipeline::Impl {
     if (start) {
       report.registration = start->registration;
       report.keyframe = start->keyframe;
-      report.reason = "poses since the first scan have turned out to be wrong: this one jumps";
+      report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
+      report.corrected_poses.assign(start->poses.begin(), start->poses.end() - 1);
       goOnFrom(std::move(*start));
     }
     return start.has_value();
@@ -297,8 +298,8 @@ struct OdometryPipeline::Impl {
   {
     report.state = state;
     report.covariance = motion.covariance();
-    report.world_T_sensor =
-        started ? motion.pose() * motion.toInstant(fractionOf(parameters.pose_instant)) : initial_pose;
+    report.world_T_sensor = started ? motion.poseAt(fractionOf(parameters.pose_instant)) : initial_pose;
+    report.provisional = starts.areOpen();
     report.milliseconds.total = watch.total();
     return report;
   }

@@ -85,11 +85,12 @@ void follow(const NextScan& scan, bool is_second, const OdometryParameters& para
   }
   if (scan.sawNothing()) {
     start.motion.carryOn();
-    return;
+  } else {
+    start.motion.setSweep(scan.sweep_fraction, scan.has_times);
+    trackWith(scan, parameters, start);
+    start.residual = updatedResidual(start.residual, start.registration);
   }
-  start.motion.setSweep(scan.sweep_fraction, scan.has_times);
-  trackWith(scan, parameters, start);
-  start.residual = updatedResidual(start.residual, start.registration);
+  start.poses.push_back(start.motion.poseAt(fractionOf(parameters.pose_instant)));
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct StartHypothesis {
   bool keyframe = false;                 ///< whether the last scan is one
   RegistrationReport registration = {};  ///< of the last scan
   double residual = 0.0;                 ///< m, root mean square of the last few scans
+  std::vector<SE3> poses = {};           ///< since the second scan, at the instant of the parameters
 };
 
 /// What every start has in common.

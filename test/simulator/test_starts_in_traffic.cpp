@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -63,23 +65,36 @@ public:
   }
 
   /// m; of the last scan's motion and, since the first, of all.
-  [[nodiscard]] double motionError() const { return error(truth_.size() - 2); }
-  [[nodiscard]] double wayError() const { return error(0); }
+  [[nodiscard]] double motionError() const { return error(truth_.size() - 2, truth_.size() - 1); }
+  [[nodiscard]] double wayError() const { return error(0, truth_.size() - 1); }
+
+  /// m, since the first scan, with what was corrected: the greatest of all scans.
+  [[nodiscard]] double greatestWayError() const
+  {
+    double greatest = 0.0;
+    for (std::size_t i = 1; i < truth_.size(); ++i) {
+      greatest = std::max(greatest, error(0, i));
+    }
+    return greatest;
+  }
 
 private:
   [[nodiscard]] double stamp() const { return 0.1 * static_cast<double>(number_); }
 
   const OdometryReport& note(const OdometryReport& report)
   {
+    EXPECT_LE(report.corrected_poses.size(), estimate_.size());
+    std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
+              estimate_.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
     estimate_.push_back(report.world_T_sensor);
     ++number_;
     return report;
   }
 
-  [[nodiscard]] double error(std::size_t since) const
+  [[nodiscard]] double error(std::size_t since, std::size_t scan) const
   {
-    const SE3 true_motion = truth_[since].inverse() * truth_.back();
-    const SE3 motion = estimate_[since].inverse() * estimate_.back();
+    const SE3 true_motion = truth_[since].inverse() * truth_[scan];
+    const SE3 motion = estimate_[since].inverse() * estimate_[scan];
     return (motion.translation - true_motion.translation).norm();
   }
 
@@ -132,6 +147,20 @@ TEST_P(AmbiguousStarts, TheNextScansTell)
     }
   }
   EXPECT_EQ(changes, 1) << "the report tells once that the start was another";
+  EXPECT_LT(scans.greatestWayError(), 1.0) << "and what the poses before should have been";
+}
+
+TEST_P(AmbiguousStarts, AreToldOf)
+{
+  FirstScans scans(optionsOf(GetParam()));
+  bool was_provisional = false;
+  for (int number = 0; number < kScans; ++number) {
+    const OdometryReport& report = scans.next();
+    EXPECT_TRUE(report.corrected_poses.empty() || (was_provisional && !report.provisional)) << number;
+    EXPECT_EQ(report.corrected_poses.empty(), report.reason.empty()) << number;
+    EXPECT_FALSE(report.provisional && number >= kSettled) << number;
+    was_provisional = report.provisional;
+  }
 }
 
 TEST(AmbiguousStart, IsSettledWithScansMissing)
@@ -143,6 +172,9 @@ TEST(AmbiguousStart, IsSettledWithScansMissing)
     }
     EXPECT_LT(scans.motionError(), 0.3) << missing;
     EXPECT_LT(scans.wayError(), 1.0) << missing;
+    if (missing != 1) {  // before the second scan nothing can be told
+      EXPECT_LT(scans.greatestWayError(), 1.0) << missing;
+    }
   }
 }
 

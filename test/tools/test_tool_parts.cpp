@@ -4,6 +4,7 @@
 #include "map_sketch.h"
 #include "plot_frame.h"
 #include "pose_pairs.h"
+#include "result_writer.h"
 #include "stage_times.h"
 
 #include <pcl_floam/io/scan_source.h>
@@ -97,6 +98,33 @@ TEST(CameraToLidar, NeedsTheLineTr)
   EXPECT_THROW(cameraToLidar(folder.write("calib.txt", "P0: 1 0 0\n"), poses), FileError);
   EXPECT_THROW(cameraToLidar(folder.write("calib.txt", "Tr: 1 0 0\n"), poses), FileError);
   EXPECT_THROW(cameraToLidar(folder.path() / "missing.txt", poses), FileError);
+}
+
+TEST(ResultWriter, PutsCorrectedPosesInPlaceOfTheLastOnes)
+{
+  const TemporaryFolder folder;
+  std::mt19937 random(5);
+  Trajectory expected;
+  ResultWriter writer(folder.path() / "result");
+  for (std::size_t scan = 0; scan < 7; ++scan) {
+    OdometryReport report;
+    report.world_T_sensor = exp(randomTwist(random, 5.0, 1.0));
+    if (scan == 5) {
+      for (std::size_t i = 2; i < 5; ++i) {
+        report.corrected_poses.push_back(exp(randomTwist(random, 5.0, 1.0)));
+        expected[i].world_T_sensor = report.corrected_poses.back();
+      }
+    }
+    expected.push_back({0.1 * static_cast<double>(scan), report.world_T_sensor});
+    writer.write(scan, expected.back().stamp, report);
+  }
+  for (const char* name : {"poses.kitti.txt", "poses.tum.txt"}) {
+    const Trajectory written = readTrajectory(folder.path() / "result" / name);
+    ASSERT_EQ(written.size(), expected.size()) << name;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      expectSame(written[i].world_T_sensor, expected[i].world_T_sensor, 1e-7);
+    }
+  }
 }
 
 TEST(TimeStatistics, AreThoseOfTheSamples)

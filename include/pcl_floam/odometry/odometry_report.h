@@ -10,6 +10,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -37,10 +38,15 @@ struct StageTimes {
 struct OdometryReport {
   TrackingState state = TrackingState::not_started;
   /// Why it was not `tracked`, or that the sequence was started again. Of a tracked scan: that the poses since the
-  /// first scan have turned out to be wrong, and this one jumps. That can only be at the ninth scan with features,
-  /// where the first two did not tell how the sensor moved (fast, among traffic). Empty otherwise.
+  /// first scan have turned out to be wrong, and this one jumps. Empty otherwise.
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
+  /// The first two scans did not tell how the sensor moved (fast, among traffic), and several motions are followed: the
+  /// poses since then may yet be corrected. Ends at the ninth scan with features at the latest.
+  bool provisional = false;
+  /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where they have turned out
+  /// to be wrong; for whoever keeps the trajectory. Empty otherwise.
+  std::vector<SE3> corrected_poses;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
   /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map
