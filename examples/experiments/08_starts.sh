@@ -40,12 +40,3 @@ for name, (seeds, times, extra) in STARTS.items():
         table.append([name, sensor, len(runs), len(lost), ", ".join(lost)])
 publish(options, [("starts", "Starts on a highway, 18 scans each", ["start", "sensor", "starts", "lost", "which"], table)])
 PYTHON
-chmod --reference=examples/experiments/07_robustness.sh examples/experiments/08_starts.sh
-python3 - <<'E'
-p='examples/experiments/README.md'
-s=open(p).read()
-s=s.replace('''seeds, missing returns, noise, four sensors; GICP and NDT beside | – |
-''','''seeds, missing returns, noise, four sensors; GICP and NDT beside | – |
-| `bash examples/experiments/08_starts.sh` | starts at 25 m/s among traffic, or standing beside it: how many are lost | – |
-''')
-open(p,'w').write(s)

@@ -31,24 +31,33 @@ public:
     const OdometryReport& report =
         read(scan) ? odometry_.track(viewOf(cloud_), scans_.stamp(scan)) : odometry_.trackMissing(scans_.stamp(scan));
     result_.scans.push_back(scan);
-    const std::vector<SE3>& corrected = report.corrected_poses;
-    std::copy(corrected.begin(), corrected.end(), result_.poses.end() - static_cast<std::ptrdiff_t>(corrected.size()));
-    result_.poses.push_back(report.world_T_sensor);
     ++result_.states[static_cast<std::size_t>(report.state)];
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
     if (readable_) {
       result_.times.push_back(report.milliseconds);
+      tell(scan, report);
       result_.last_read = report;
-      if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
-        progress_.message(scans_.path(scan).string() + ": not tracked: " + report.reason);
-      } else if (report.state == TrackingState::tracked && !report.reason.empty()) {
-        progress_.message(scans_.path(scan).string() + ": " + report.reason);
-      }
     }
     return report;
   }
 
 private:
+  void tell(std::size_t scan, const OdometryReport& report)
+  {
+    const std::string file = scans_.path(scan).string();
+    if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
+      progress_.message(file + ": not tracked: " + report.reason);
+    } else if (!report.corrected_poses.empty()) {
+      progress_.message(file + ": only now it is plain how the sensor moved: " +
+                        std::to_string(report.corrected_poses.size()) + " poses before are corrected");
+    } else if (!report.reason.empty()) {
+      progress_.message(file + ": " + report.reason);
+    }
+    if (report.provisional && !result_.last_read.provisional) {
+      progress_.message(file + ": the first scans do not tell how the sensor moves: poses may yet be corrected");
+    }
+  }
+
   bool read(std::size_t scan)
   {
     readable_ = true;
@@ -124,6 +133,9 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
       break;
     }
     progress.update(i + 1);
+  }
+  for (const StampedPose& pose : writer.written()) {
+    result.poses.push_back(pose.world_T_sensor);
   }
   return result;
 }

@@ -12,9 +12,6 @@ namespace pcl_floam::tools {
 
 namespace {
 
-constexpr const char* kKittiName = "poses.kitti.txt";
-constexpr const char* kTumName = "poses.tum.txt";
-
 const std::filesystem::path& created(const std::filesystem::path& folder)
 {
   std::error_code error;
@@ -28,9 +25,8 @@ const std::filesystem::path& created(const std::filesystem::path& folder)
 }  // namespace
 
 ResultWriter::ResultWriter(const std::filesystem::path& folder)
-    : folder_(created(folder)),
-      kitti_(folder_ / kKittiName, TrajectoryFormat::kitti),
-      tum_(folder_ / kTumName, TrajectoryFormat::tum),
+    : kitti_(created(folder) / "poses.kitti.txt", TrajectoryFormat::kitti),
+      tum_(folder / "poses.tum.txt", TrajectoryFormat::tum),
       timing_path_(folder / "timing.csv"),
       timing_(timing_path_)
 {
@@ -48,12 +44,7 @@ ResultWriter::ResultWriter(const std::filesystem::path& folder)
 
 void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& report)
 {
-  if (!report.corrected_poses.empty()) {
-    correctLast(report.corrected_poses);
-  }
-  written_.push_back({stamp, report.world_T_sensor});
-  kitti_.write(written_.back());
-  tum_.write(written_.back());
+  writePoses({stamp, report.world_T_sensor}, report.corrected_poses);
   timing_ << scan;
   for (const Stage& stage : kStages) {
     timing_ << ',' << report.milliseconds.*stage.time;
@@ -65,17 +56,15 @@ void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& r
   }
 }
 
-void ResultWriter::correctLast(const std::vector<SE3>& poses)
+void ResultWriter::writePoses(const StampedPose& pose, const std::vector<SE3>& corrected)
 {
-  auto last = written_.end() - static_cast<std::ptrdiff_t>(poses.size());
-  for (const SE3& pose : poses) {
-    (last++)->world_T_sensor = pose;
+  auto last = written_.end() - static_cast<std::ptrdiff_t>(corrected.size());
+  for (const SE3& world_T_sensor : corrected) {
+    (last++)->world_T_sensor = world_T_sensor;
   }
-  kitti_ = TrajectoryWriter(folder_ / kKittiName, TrajectoryFormat::kitti);
-  tum_ = TrajectoryWriter(folder_ / kTumName, TrajectoryFormat::tum);
-  for (const StampedPose& pose : written_) {
-    kitti_.write(pose);
-    tum_.write(pose);
+  written_.push_back(pose);
+  for (TrajectoryWriter* writer : {&kitti_, &tum_}) {
+    corrected.empty() ? writer->write(pose) : writer->writeAgain(written_);
   }
 }
 

@@ -24,10 +24,12 @@ public:
   /// \throws FileError if a file cannot be written (disk full).
   void write(std::size_t scan, double stamp, const OdometryReport& report);
 
-private:
-  void correctLast(const std::vector<SE3>& poses);
+  /// All poses so far, as they are known now.
+  [[nodiscard]] const Trajectory& written() const { return written_; }
 
-  std::filesystem::path folder_;
+private:
+  void writePoses(const StampedPose& pose, const std::vector<SE3>& corrected);
+
   TrajectoryWriter kitti_;
   TrajectoryWriter tum_;
   Trajectory written_;

@@ -9,6 +9,7 @@
 #include <iomanip>
 #include <locale>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace pcl_floam {
@@ -156,9 +157,10 @@ void TrajectoryWriter::write(const StampedPose& pose)
   const Eigen::Matrix3d& r = pose.world_T_sensor.rotation;
   const Eigen::Vector3d& t = pose.world_T_sensor.translation;
   if (format_ == TrajectoryFormat::kitti) {
-    stream_ << std::scientific << std::setprecision(9);
+    stream_ << std::scientific;
     for (Eigen::Index row = 0; row < 3; ++row) {
-      stream_ << (row == 0 ? "" : " ") << r(row, 0) << ' ' << r(row, 1) << ' ' << r(row, 2) << ' ' << t[row];
+      stream_ << (row == 0 ? "" : " ") << std::setprecision(9) << r(row, 0) << ' ' << r(row, 1) << ' ' << r(row, 2)
+              << ' ' << std::setprecision(12) << t[row];  // micrometres a thousand kilometres from the origin
     }
   } else {
     const Eigen::Quaterniond q = Eigen::Quaterniond(r).normalized();
@@ -172,6 +174,26 @@ void TrajectoryWriter::write(const StampedPose& pose)
   if (!stream_) {
     throw FileError::ofSystem(path_, "cannot be written");
   }
+}
+
+void TrajectoryWriter::writeAgain(const Trajectory& poses)
+{
+  const std::filesystem::path unfinished = path_.string() + ".part";
+  TrajectoryWriter again(unfinished, format_);
+  std::error_code error;
+  try {
+    for (const StampedPose& pose : poses) {
+      again.write(pose);
+    }
+  } catch (const FileError&) {
+    std::filesystem::remove(unfinished, error);
+    throw;
+  }
+  std::filesystem::rename(unfinished, path_, error);
+  if (error) {
+    throw FileError(path_, "cannot be replaced: " + error.message());
+  }
+  stream_ = std::move(again.stream_);
 }
 
 }  // namespace pcl_floam

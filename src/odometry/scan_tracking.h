@@ -9,6 +9,7 @@
 #include "odometry/start_hypotheses.h"
 #include "odometry/stopwatch.h"
 #include "odometry/vertical_correction.h"
+#include "odometry/waiting_scans.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
 #include <pcl_floam/filters/sweep_motion.h>
@@ -66,6 +67,7 @@ struct OdometryPipeline::Impl {
   FeatureSet measured;          ///< E_k and S_k as measured
   FeatureSet undistorted;       ///< compensated to the reference instant
   FeatureSet first;             ///< the first scan as measured, until its motion is known
+  WaitingScans waiting;         ///< until then
   double periods = 1.0;         ///< since the last scan
   double sweep_fraction = 1.0;  ///< duration of the sweep in periods
   SE3 world_T_predicted;
@@ -107,6 +109,7 @@ struct OdometryPipeline::Impl {
     periods = clock.tick(stamp);
     if (started) {
       motion.elapse(periods);
+      waiting.elapse(periods);
     }
   }
 
@@ -170,23 +173,30 @@ struct OdometryPipeline::Impl {
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
-  /// \return false when they can't be found
+  /// \return false when they can't be found; with a registration that has converged, when there are several too far
+  /// apart
   bool findFirstMotion()
   {
+    // With scans missing between, the candidates of an ambiguous start lie too far apart: a VLP-16's start on a highway
+    // (seed 22) was taken for rest, and lost.
+    constexpr double kTooLong = 1.5;
     const FirstScans scans{first, measured, std::max(motion.periodsSinceTracked(), 1e-3), motion.compensatedFraction(),
                            kReference};
     const auto found = pcl_floam::findFirstMotion(scans, parameters, report.registration);
-    if (found) {
-      const FirstScan first_scan{first, initial_pose, motion};
-      StartHypothesis start = startWith(found->twist, first_scan, parameters);
-      start_was_ambiguous = !found->others.empty();
-      if (start_was_ambiguous) {
-        starts = StartHypotheses(first_scan, start, found->others, parameters);
-      }
-      goOnFrom(std::move(start));
-    }
     report.milliseconds.registration += watch.lap();
-    return found.has_value();
+    if (!found || (!found->others.empty() && motion.periodsSinceTracked() > kTooLong)) {
+      return false;
+    }
+    const FirstScan first_scan{first, initial_pose, motion, waiting.first(), waiting.others()};
+    StartHypothesis start = startWith(found->twist, first_scan, parameters);
+    start_was_ambiguous = !found->others.empty();
+    if (start_was_ambiguous) {
+      starts = StartHypotheses(first_scan, start, found->others, parameters);
+    }
+    correctPoses(start.poses);
+    goOnFrom(std::move(start));
+    report.milliseconds.registration += watch.lap();
+    return true;
   }
 
   /// Whether the scans so far have shown that the drive began with another motion than was found.
@@ -195,17 +205,25 @@ struct OdometryPipeline::Impl {
     if (!starts.areOpen()) {
       return false;
     }
-    const auto start =
-        starts.track({measured, periods, sweep_fraction, timing.valid(), typicalRange(measured)}, parameters);
+    auto start = starts.track({measured, periods, sweep_fraction, timing.valid(), typicalRange(measured)}, parameters);
     report.milliseconds.registration += watch.lap();
     if (start) {
       report.registration = start->registration;
       report.keyframe = start->keyframe;
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
-      report.corrected_poses.assign(start->poses.begin(), start->poses.end() - 1);
+      start->poses.pop_back();  // this scan's own
+      correctPoses(start->poses);
       goOnFrom(std::move(*start));
     }
     return start.has_value();
+  }
+
+  void correctPoses(const std::vector<SE3>& poses)
+  {
+    report.corrected_poses = poses;
+    if (!poses.empty() && report.reason.empty()) {
+      report.reason = "only now a motion is known: the poses of scans since the first one are corrected";
+    }
   }
 
   void goOnFrom(StartHypothesis start)
@@ -252,6 +270,13 @@ struct OdometryPipeline::Impl {
   /// The first usable scan.
   const OdometryReport& start()
   {
+    waiting = WaitingScans();
+    return beginWithThis();
+  }
+
+  /// The first usable scan after the one whose pose is given, or that one.
+  const OdometryReport& beginWithThis()
+  {
     started = true;
     first = measured;
     motion.begin(initial_pose);
@@ -267,6 +292,14 @@ struct OdometryPipeline::Impl {
   const OdometryReport& startAgain()
   {
     constexpr int kMaxFailures = 5;
+    if (report.registration.hasConverged()) {
+      report.registration = RegistrationReport();
+      waiting.beginWithLast();
+      beginWithThis();
+      report.reason =
+          "started again, since scans are missing between the first one and this one, which fits it in several ways";
+      return report;
+    }
     const char* reason = toString(report.registration.termination);
     if (++failed_starts < kMaxFailures) {
       return predictOnly(reason);
@@ -291,6 +324,9 @@ struct OdometryPipeline::Impl {
       return finish(TrackingState::not_started);
     }
     motion.carryOn();
+    if (!motion.isKnown() && !prior_map) {
+      waiting.add();
+    }
     return finish(TrackingState::predicted);
   }
 

@@ -99,8 +99,12 @@ StartHypothesis startWith(const Vector6& twist, const FirstScan& first, const Od
 {
   const SweepMotion sweep(first.motion.compensatedFraction() * twist, kReference);
   StartHypothesis start{first.motion, KeyframeVoxelMap(parameters.map), SE3()};
-  start.motion.setFirst(first.pose * sweep.at(fractionOf(parameters.pose_instant)).inverse(), twist);
+  const SE3 pose = first.pose * exp(first.periods_since_pose * twist);
+  start.motion.setFirst(pose * sweep.at(fractionOf(parameters.pose_instant)).inverse(), twist);
   start.world_T_keyframe = start.motion.pose();
+  for (const double periods : first.others) {
+    start.poses.push_back(first.pose * exp(periods * twist));
+  }
   FeatureSet undistorted;
   compensate(first.features, sweep, undistorted);
   start.map.insert(undistorted, start.world_T_keyframe);

@@ -23,15 +23,18 @@ struct StartHypothesis {
   bool keyframe = false;                 ///< whether the last scan is one
   RegistrationReport registration = {};  ///< of the last scan
   double residual = 0.0;                 ///< m, root mean square of the last few scans
-  std::vector<SE3> poses = {};           ///< since the second scan, at the instant of the parameters
+  std::vector<SE3> poses = {};           ///< since the pose that is given, at the instant of the parameters
 };
 
 /// What every start has in common.
 struct FirstScan {
   FeatureSet features;  ///< as measured
-  SE3 pose;             ///< at the instant of the parameters
+  SE3 pose;             ///< that is given, at the instant of the parameters
   /// When the second scan has come, without a velocity yet.
   MotionModel motion;
+  double periods_since_pose = 0.0;  ///< more than 0 if the scan at the given pose was given up
+  /// When else there were scans, in periods since the pose: they could not be registered while no motion was known.
+  std::vector<double> others = {};
 };
 
 /// A scan, and when it came.
@@ -46,7 +49,7 @@ struct NextScan {
   [[nodiscard]] bool sawNothing() const { return measured.edges.empty() && measured.planes.empty(); }
 };
 
-/// The first scan, given its motion: its pose at the instant of the parameters stays what it was reported to be.
+/// The first scan, given the motion since its pose was.
 [[nodiscard]] StartHypothesis startWith(const Vector6& twist, const FirstScan& first,
                                         const OdometryParameters& parameters);
 

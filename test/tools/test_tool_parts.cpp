@@ -118,9 +118,9 @@ TEST(ResultWriter, PutsCorrectedPosesInPlaceOfTheLastOnes)
     expected.push_back({0.1 * static_cast<double>(scan), report.world_T_sensor});
     writer.write(scan, expected.back().stamp, report);
   }
-  for (const char* name : {"poses.kitti.txt", "poses.tum.txt"}) {
-    const Trajectory written = readTrajectory(folder.path() / "result" / name);
-    ASSERT_EQ(written.size(), expected.size()) << name;
+  for (const Trajectory& written : {writer.written(), readTrajectory(folder.path() / "result" / "poses.kitti.txt"),
+                                    readTrajectory(folder.path() / "result" / "poses.tum.txt")}) {
+    ASSERT_EQ(written.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
       expectSame(written[i].world_T_sensor, expected[i].world_T_sensor, 1e-7);
     }

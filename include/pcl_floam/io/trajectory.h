@@ -42,6 +42,10 @@ public:
   /// \throws FileError if it cannot be written (disk full).
   void write(const StampedPose& pose);
 
+  /// Puts \p poses in place of all that was written; goes on after them. The file that was there stays until the new
+  /// one is whole. \throws FileError if it cannot be replaced.
+  void writeAgain(const Trajectory& poses);
+
 private:
   std::filesystem::path path_;
   TrajectoryFormat format_;

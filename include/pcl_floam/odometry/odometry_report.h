@@ -42,10 +42,12 @@ struct OdometryReport {
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// The first two scans did not tell how the sensor moved (fast, among traffic), and several motions are followed: the
-  /// poses since then may yet be corrected. Ends at the ninth scan with features at the latest.
+  /// poses since then may yet be corrected, by more than `covariance` tells. Ends at the ninth scan with features at
+  /// the latest.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where they have turned out
-  /// to be wrong; for whoever keeps the trajectory. Empty otherwise.
+  /// to be wrong, or were unknown because the second scan was missing; for whoever keeps the trajectory. Empty
+  /// otherwise.
   std::vector<SE3> corrected_poses;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
