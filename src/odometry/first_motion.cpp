@@ -47,7 +47,7 @@ public:
         parameters_(parameters),
         registration_(forTheStart(parameters.registration)),
         map_(parameters.map),
-        sample_(startSample(scans.second))
+        sample_(spreadSample(scans.second))
   {
   }
 
@@ -248,7 +248,7 @@ private:
 
 }  // namespace
 
-FeatureSet startSample(const FeatureSet& features)
+FeatureSet spreadSample(const FeatureSet& features)
 {
   constexpr std::size_t kEnough = 500;
   FeatureSet sample;

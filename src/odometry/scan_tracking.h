@@ -3,6 +3,7 @@
 #pragma once
 
 #include "odometry/constant_velocity.h"
+#include "odometry/crowding.h"
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
 #include "odometry/scan_sample.h"
@@ -75,6 +76,7 @@ struct OdometryPipeline::Impl {
   Stopwatch watch;
   StartHypotheses starts;  ///< open for the first scans, if these are ambiguous
   bool start_was_ambiguous = false;
+  Crowding crowding;
 
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
@@ -164,13 +166,26 @@ struct OdometryPipeline::Impl {
     run.spread_features = is_young;
     run.sparse_target = is_young;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    // Where the start was ambiguous there is more traffic than world: with features that are spread further, all the
-    // way, highways with a VLP-16 (seeds 21 to 23) come to 0.087, 0.149 and 0.080 % instead of 0.180, 0.263 and 0.152,
-    // and with a lorry beside an HDL-64 to 0.121, 0.095 and 0.079 instead of being lost.
-    if (start_was_ambiguous) {
-      return registerFeatures(startSample(measured), target, run, parameters.registration);
+    const auto registered = [&](const FeatureSet& features) {
+      return registerFeatures(features, target, run, parameters.registration);
+    };
+    // A lorry beside the sensor drew a drive back by 6 m (highway with an HDL-32, seed 22; 0.1 m with features that are
+    // spread further).
+    const bool compares = !(is_young && start_was_ambiguous) && crowding.isDue();
+    RegistrationReport spread;
+    if (compares || crowding.misleads()) {
+      spread = registered(spreadSample(measured));
+      report.crowded = spread.hasConverged();
+      if (!compares && report.crowded) {
+        return spread;
+      }
     }
-    return registerFeatures(measured, target, run, parameters.registration);
+    const RegistrationReport all = registered(measured);
+    if (compares) {
+      crowding.compare(all, spread);
+    }
+    report.crowded = crowding.misleads() && spread.hasConverged();
+    return report.crowded ? spread : all;
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -193,6 +208,7 @@ struct OdometryPipeline::Impl {
     start_was_ambiguous = !found->others.empty();
     if (start_was_ambiguous) {
       starts = StartHypotheses(first_scan, start, found->others, parameters);
+      crowding.suspect();
     }
     correctPoses(start.poses);
     goOnFrom(std::move(start));

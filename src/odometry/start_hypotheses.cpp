@@ -137,7 +137,7 @@ void StartHypotheses::miss(double periods, const OdometryParameters& parameters)
 void StartHypotheses::followWithEach(NextScan scan, const OdometryParameters& parameters)
 {
   seen_ += scan.sawNothing() ? 0 : 1;
-  scan.sample = startSample(scan.measured);
+  scan.sample = spreadSample(scan.measured);
   scans_.push_back(std::move(scan));
   for (StartHypothesis& start : starts_) {
     follow(scans_.back(), scans_.size() == 1, parameters, start);

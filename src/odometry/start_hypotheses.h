@@ -44,7 +44,7 @@ struct NextScan {
   double sweep_fraction = 1.0;  ///< duration of the sweep in periods
   bool has_times = false;
   double typical_range = 1.0;  ///< m, of the points
-  FeatureSet sample = {};      ///< those that are registered (startSample); filled in by \ref StartHypotheses
+  FeatureSet sample = {};      ///< those that are registered (spreadSample); filled in by \ref StartHypotheses
 
   [[nodiscard]] bool sawNothing() const { return measured.edges.empty() && measured.planes.empty(); }
 };

@@ -1,0 +1,63 @@
+// A lorry that keeps beside the sensor and fills a third of its view must not draw the pose along.
+#include "simulation.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+
+namespace pcl_floam::simulator {
+namespace {
+
+struct Outcome {
+  int crowded = 0;
+  double heading_error = 0.0;  ///< degrees, at the end
+  double turn = 0.0;           ///< degrees, from the first scan to the last
+};
+
+/// A city from standstill on, around the first corner.
+Outcome driveThroughTown(bool lorry)
+{
+  constexpr double kDegrees = 57.29577951308232;
+  constexpr std::size_t kScans = 180;
+  SimulationOptions options;
+  options.world = "urban";
+  options.sensor = "hdl64";
+  options.seed = 21;
+  options.truck = lorry;
+  Simulation simulation(options);
+  Odometry<PointXYZIRT> odometry;
+  Outcome outcome;
+  SE3 first_T_world;
+  for (std::size_t number = 0; number < kScans; ++number) {
+    const Sweep sweep = simulation.sweep(number);
+    if (number == 0) {
+      first_T_world = sweep.world_T_end.inverse();
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud, sweep.end_time);
+    outcome.crowded += report.crowded ? 1 : 0;
+    const SE3 true_motion = first_T_world * sweep.world_T_end;
+    outcome.heading_error = kDegrees * log(true_motion.inverse() * report.world_T_sensor)[5];
+    outcome.turn = kDegrees * std::abs(log(true_motion)[5]);
+  }
+  return outcome;
+}
+
+}  // namespace
+
+TEST(LorryBeside, DoesNotTurnTheSensorBackInACorner)
+{
+  const Outcome outcome = driveThroughTown(true);
+  EXPECT_GT(outcome.turn, 60.0);
+  EXPECT_LT(std::abs(outcome.heading_error), 0.3);  // 1.2 with all features
+  EXPECT_GT(outcome.crowded, 60);
+}
+
+TEST(LorryBeside, IsNotSuspectedWhereThereIsNone)
+{
+  EXPECT_EQ(driveThroughTown(false).crowded, 0);
+}
+
+}  // namespace pcl_floam::simulator
