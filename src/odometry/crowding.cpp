@@ -8,9 +8,11 @@ namespace pcl_floam {
 namespace {
 
 /// In simulated rooms, halls, corridors, tunnels and cities without a lorry the mean of twenty comparisons stays below
-/// 1.1, with a lorry beside it comes to 3; of five it wavers more, but finds out before a corner is over.
+/// 1.1, with a lorry beside it comes to 3; of five it wavers more, but finds out before a corner is over: if every
+/// fifth scan were compared all the time, and four counted, the cities would come to 0.10, 0.12 and 0.24 %.
 constexpr double kComparisons = 5.0;
 constexpr double kMisleads = 1.5;
+constexpr double kIsLikely = 0.8;
 constexpr double kAgrees = 0.5;
 
 /// One comparison must not decide alone.
@@ -26,6 +28,22 @@ Matrix6 inSensorAxes(const Matrix6& covariance, const SE3& world_T_sensor)
 }
 
 }  // namespace
+
+bool Crowding::isDue()
+{
+  const bool due = scans_ == 0;
+  scans_ = (scans_ + 1) % scansBetween();
+  return due;
+}
+
+/// Every scan would cost a tenth of the time, mostly for nothing.
+int Crowding::scansBetween() const
+{
+  if (misleads_) {
+    return 3;
+  }
+  return pull_.cwiseAbs().maxCoeff() > kIsLikely ? 1 : 5;
+}
 
 void Crowding::suspect()
 {

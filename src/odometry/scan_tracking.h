@@ -172,18 +172,21 @@ struct OdometryPipeline::Impl {
     // A lorry beside the sensor drew a drive back by 6 m (highway with an HDL-32, seed 22; 0.1 m with features that are
     // spread further).
     const bool compares = !(is_young && start_was_ambiguous) && crowding.isDue();
-    RegistrationReport spread;
-    if (compares || crowding.misleads()) {
-      spread = registered(spreadSample(measured));
+    if (crowding.misleads() && !compares) {
+      const RegistrationReport spread = registered(spreadSample(measured));
       report.crowded = spread.hasConverged();
-      if (!compares && report.crowded) {
-        return spread;
-      }
+      return report.crowded ? spread : registered(measured);
     }
     const RegistrationReport all = registered(measured);
-    if (compares) {
-      crowding.compare(all, spread);
+    if (!compares) {
+      return all;
     }
+    if (!crowding.misleads() && all.hasConverged()) {  // mostly they agree, and this is the shorter way
+      run.guess = all.target_T_source;
+      run.guess_uncertainty = 0.0;
+    }
+    const RegistrationReport spread = registered(spreadSample(measured));
+    crowding.compare(all, spread);
     report.crowded = crowding.misleads() && spread.hasConverged();
     return report.crowded ? spread : all;
   }

@@ -28,14 +28,26 @@ Vector6 sideways(double deviations)
   return deviations * Vector6::Unit(1);
 }
 
-TEST(Crowding, IsComparedInOneScanOfThree)
+int comparisonsIn(Crowding& crowding, int scans)
 {
-  Crowding crowding;
   int compared = 0;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < scans; ++i) {
     compared += crowding.isDue() ? 1 : 0;
   }
-  EXPECT_EQ(compared, 10);
+  return compared;
+}
+
+TEST(Crowding, IsComparedInOneScanOfFiveAndMoreOftenInDoubt)
+{
+  Crowding crowding;
+  EXPECT_EQ(comparisonsIn(crowding, 30), 6);
+  for (int i = 0; i < 10; ++i) {
+    compare(crowding, SE3(), sideways(1.2));
+  }
+  EXPECT_FALSE(crowding.misleads());
+  EXPECT_EQ(comparisonsIn(crowding, 30), 30);
+  crowding.suspect();
+  EXPECT_EQ(comparisonsIn(crowding, 30), 10);
 }
 
 TEST(Crowding, MisleadsWhileTheSpreadFeaturesDisagreeAgainAndAgain)
