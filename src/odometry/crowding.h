@@ -18,7 +18,7 @@ public:
   /// spread features are used; for all while the last ones make it seem likely that they should be
   [[nodiscard]] bool isDue();
 
-  /// Begins with spread features, until they agree with all.
+  /// Makes it likely: the next comparison decides.
   void suspect();
 
   /// Registrations of the same scan from the same guess, with all features and with spread ones. One that has not

@@ -46,7 +46,10 @@ TEST(Crowding, IsComparedInOneScanOfFiveAndMoreOftenInDoubt)
   }
   EXPECT_FALSE(crowding.misleads());
   EXPECT_EQ(comparisonsIn(crowding, 30), 30);
-  crowding.suspect();
+  for (int i = 0; i < 10; ++i) {
+    compare(crowding, SE3(), sideways(2.0));
+  }
+  EXPECT_TRUE(crowding.misleads());
   EXPECT_EQ(comparisonsIn(crowding, 30), 10);
 }
 
@@ -104,15 +107,25 @@ TEST(Crowding, DeviationsAreThoseOfTheSensorsAxes)
   }
 }
 
-TEST(Crowding, IsSuspectedUntilTheFeaturesAgree)
+TEST(Crowding, WhereItIsSuspectedOneComparisonDecides)
 {
-  Crowding crowding;
-  crowding.suspect();
-  EXPECT_TRUE(crowding.misleads());
-  for (int i = 0; i < 10; ++i) {
-    compare(crowding, SE3(), sideways(0.1));
+  for (const bool disagree : {false, true}) {
+    Crowding crowding;
+    crowding.suspect();
+    compare(crowding, SE3(), sideways(disagree ? 2.0 : 1.0));
+    EXPECT_EQ(crowding.misleads(), disagree);
   }
-  EXPECT_FALSE(crowding.misleads());
+}
+
+TEST(Crowding, IsNotWhatHasTheGroundHigherOrTilted)
+{
+  for (const int axis : {2, 3, 4}) {
+    Crowding crowding;
+    for (int i = 0; i < 10; ++i) {
+      compare(crowding, SE3(), 3.0 * Vector6::Unit(axis));
+    }
+    EXPECT_FALSE(crowding.misleads());
+  }
 }
 
 TEST(Crowding, TakesNothingFromWhatIsLockedOrHasFailed)
