@@ -138,9 +138,11 @@ TEST(Crowding, TakesNothingFromWhatIsLockedOrHasFailed)
     spread = converged(exp(sideways(1.0)));
     spread.termination = Termination::too_few_correspondences;
     crowding.compare(converged(SE3()), spread);
+    EXPECT_FALSE(crowding.misleads());
     RegistrationReport failed;
-    failed.target_T_source = exp(sideways(1.0));
+    failed.target_T_source = exp(sideways(-1.0));
     crowding.compare(failed, converged(SE3()));
+    EXPECT_FALSE(crowding.misleads());
   }
   EXPECT_FALSE(crowding.misleads());
   for (int i = 0; i < 10; ++i) {
