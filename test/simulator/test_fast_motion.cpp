@@ -1,0 +1,84 @@
+// A sensor that is swung by hand, half as fast again as it usually is in the simulated office, from the first scan on.
+
+#include "simulation.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+
+namespace pcl_floam::simulator {
+
+namespace {
+
+constexpr double kPeriod = 0.1;  // s
+
+constexpr double kFaster = 1.5;
+
+/// With fewer sweeps a second, taken for ten a second, all goes on faster, and accelerations grow with the square.
+SimulationOptions fasterSwing(std::uint64_t seed, double start)
+{
+  SimulationOptions options;
+  options.world = "handheld";
+  options.seed = seed;
+  options.rate = 1.0 / (kFaster * kPeriod);
+  options.start = start;
+  return options;
+}
+
+}  // namespace
+
+/// Seconds into the swing where the first sweep is taken.
+class FastMotion : public testing::TestWithParam<int> {};
+
+TEST_P(FastMotion, IsFollowedFromTheFirstScanOn)
+{
+  constexpr std::size_t kScans = 60;
+  Simulation simulation(fasterSwing(21, GetParam()));
+  OdometryParameters parameters;
+  parameters.pose_instant = PoseInstant::middle;
+  Odometry<PointXYZIRT> odometry(parameters);
+  SE3 first;
+  SE3 last;
+  SE3 last_but_one;
+  double fastest_turn = 0.0;
+  double acceleration = 0.0;
+  double farthest = 0.0;
+  double farthest_turned = 0.0;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    const SE3& truth = sweep.world_T_middle;
+    if (i == 0) {
+      first = last = last_but_one = truth;
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud, kPeriod * static_cast<double>(i));
+    ASSERT_TRUE(report.registration.hasConverged() || i == 0) << i << ": " << report.reason;
+    const SE3 error = (first.inverse() * truth).inverse() * report.world_T_sensor;
+    farthest = std::max(farthest, error.translation.norm());
+    farthest_turned = std::max(farthest_turned, rotationAngle(error.rotation));
+    fastest_turn = std::max(fastest_turn, rotationAngle(last.rotation.transpose() * truth.rotation) / kPeriod);
+    if (i >= 2) {
+      const Eigen::Vector3d change = truth.translation - 2.0 * last.translation + last_but_one.translation;
+      acceleration = std::max(acceleration, change.norm() / (kPeriod * kPeriod));
+    }
+    last_but_one = last;
+    last = truth;
+  }
+  RecordProperty("fastest_turn_rad_per_s", std::to_string(fastest_turn));
+  RecordProperty("acceleration_m_per_s2", std::to_string(acceleration));
+  RecordProperty("farthest_m", std::to_string(farthest));
+  RecordProperty("farthest_turned_rad", std::to_string(farthest_turned));
+  EXPECT_GT(fastest_turn, 120.0 * M_PI / 180.0);  // else nothing was shown
+  EXPECT_GT(acceleration, 5.0);
+  EXPECT_LT(farthest, 0.05);
+  EXPECT_LT(farthest_turned, 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Starts, FastMotion, testing::Values(0, 10, 25),
+                         [](const auto& start) { return std::to_string(start.param); });
+
+}  // namespace pcl_floam::simulator
