@@ -4,19 +4,32 @@
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 
+#include <algorithm>
 #include <iostream>
+#include <iterator>
+#include <vector>
 
 int main(int argc, char** argv)
 try {
   const pcl_floam::ScanSource scans(argc == 2 ? argv[1] : ".");
   pcl_floam::OdometryPipeline odometry;  // for a known point type: pcl_floam::Odometry<PointT>
+  std::vector<pcl_floam::SE3> trajectory;
   pcl::PCLPointCloud2 scan;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     scans.read(i, scan);
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
     std::cout << scans.path(i).filename().string() << ": " << toString(report.state) << ", at "
               << report.world_T_sensor.translation.transpose() << '\n';
+    // After a start among traffic the poses so far may turn out to be wrong: here are those just before this one.
+    const std::vector<pcl_floam::SE3>& corrected = report.corrected_poses;
+    std::copy(corrected.begin(), corrected.end(), std::prev(trajectory.end(), static_cast<long>(corrected.size())));
+    trajectory.push_back(report.world_T_sensor);
   }
+  double length = 0.0;
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    length += (trajectory[i].translation - trajectory[i - 1].translation).norm();
+  }
+  std::cout << trajectory.size() << " scans, " << length << " m\n";
   return 0;
 } catch (const pcl_floam::FileError& error) {
   std::cerr << error.what() << '\n';
