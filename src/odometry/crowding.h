@@ -4,6 +4,8 @@
 
 #include <pcl_floam/registration/registration_report.h>
 
+#include <Eigen/Core>
+
 namespace pcl_floam {
 
 /// A lorry that keeps beside the sensor fills a third of the view, has as many of the features, and says in each scan
@@ -11,17 +13,17 @@ namespace pcl_floam {
 /// (cities with an HDL-64 come to 0.032, 0.037 and 0.027 instead of 0.025, 0.029 and 0.024 %), so they are registered
 /// beside all features now and then, and instead of them while the two disagree again and again. Cities with a lorry
 /// beside the sensor (HDL-64, seeds 21 to 23) come to 0.08, 0.08 and 0.07 % instead of 1.0, 0.9 and 1.6; highways with
-/// a VLP-16, which start ambiguously, to 0.09, 0.17 and 0.08 instead of 0.18, 0.26 and 0.15.
+/// a VLP-16, which start ambiguously, to 0.09, 0.15 and 0.08 instead of 0.18, 0.26 and 0.15.
 class Crowding {
 public:
   /// Whether the present scan should be compared; for each scan once. \return true for one in five; in three while
   /// spread features are used; for all while the last ones make it seem likely that they should be
   [[nodiscard]] bool isDue();
 
-  /// Makes it likely: the next comparison decides.
+  /// Takes it for granted until comparisons agree again and again.
   void suspect();
 
-  /// Registrations of the same scan from the same guess, with all features and with spread ones. One that has not
+  /// Registrations of the same scan, with all features and with spread ones. One that has not
   /// converged tells nothing.
   void compare(const RegistrationReport& all, const RegistrationReport& spread);
 
@@ -31,10 +33,12 @@ public:
 private:
   [[nodiscard]] int scansBetween() const;
 
-  int scans_ = 0;  ///< since the last comparison
+  int scans_since_ = 4;  ///< the last comparison; the first scan is compared
   bool misleads_ = false;
-  /// Running mean of where the spread features have the pose, in the sensor's axes and their standard deviations.
-  Vector6 pull_ = Vector6::Zero();
+  int agreements_ = 0;  ///< comparisons in a row whose mean was small
+  /// Running mean of where the spread features have the pose: x, y and heading in the sensor's axes, in their standard
+  /// deviations.
+  Eigen::Vector3d pull_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace pcl_floam

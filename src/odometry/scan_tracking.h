@@ -172,7 +172,7 @@ struct OdometryPipeline::Impl {
     // Where the start was ambiguous there may be more traffic than world: a lorry beside the sensor drew a drive back
     // by 6 m (highway with an HDL-32, seed 22; 0.1 m with features that are spread further).
     const bool is_doubtful = is_young && start_was_ambiguous;
-    const bool compares = !is_doubtful && crowding.isDue();
+    const bool compares = crowding.isDue() && !is_doubtful;
     if (is_doubtful || (crowding.misleads() && !compares)) {
       const RegistrationReport spread = registered(spreadSample(measured));
       report.crowded = spread.hasConverged();
@@ -188,7 +188,7 @@ struct OdometryPipeline::Impl {
     }
     const RegistrationReport spread = registered(spreadSample(measured));
     crowding.compare(all, spread);
-    report.crowded = crowding.misleads() && spread.hasConverged();
+    report.crowded = spread.hasConverged() && (crowding.misleads() || !all.hasConverged());
     return report.crowded ? spread : all;
   }
 

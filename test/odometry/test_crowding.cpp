@@ -62,7 +62,7 @@ TEST(Crowding, MisleadsWhileTheSpreadFeaturesDisagreeAgainAndAgain)
   EXPECT_TRUE(crowding.misleads());
   compare(crowding, SE3(), sideways(0.0));
   EXPECT_TRUE(crowding.misleads());  // one that agrees is not enough
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 40; ++i) {
     compare(crowding, SE3(), sideways(0.0));
   }
   EXPECT_FALSE(crowding.misleads());
@@ -107,13 +107,33 @@ TEST(Crowding, DeviationsAreThoseOfTheSensorsAxes)
   }
 }
 
-TEST(Crowding, WhereItIsSuspectedOneComparisonDecides)
+TEST(Crowding, WhatIsSuspectedHoldsUntilManyComparisonsAgree)
 {
-  for (const bool disagree : {false, true}) {
-    Crowding crowding;
-    crowding.suspect();
-    compare(crowding, SE3(), sideways(disagree ? 2.0 : 1.0));
-    EXPECT_EQ(crowding.misleads(), disagree);
+  Crowding crowding;
+  crowding.suspect();
+  EXPECT_TRUE(crowding.misleads());
+  EXPECT_EQ(comparisonsIn(crowding, 30), 10);
+  for (int i = 0; i < 40; ++i) {
+    compare(crowding, SE3(), sideways(i % 10 == 0 ? 4.0 : 0.0));  // some still disagree
+  }
+  EXPECT_TRUE(crowding.misleads());
+  for (int i = 0; i < 30; ++i) {
+    compare(crowding, SE3(), sideways(0.0));
+  }
+  EXPECT_FALSE(crowding.misleads());
+  EXPECT_EQ(comparisonsIn(crowding, 30), 6);
+}
+
+TEST(Crowding, EachDirectionAlongTheGroundCountsBothWays)
+{
+  for (const int axis : {0, 1, 5}) {
+    for (const double deviations : {-2.5, 2.5}) {
+      Crowding crowding;
+      for (int i = 0; i < 10; ++i) {
+        compare(crowding, SE3(), deviations * Vector6::Unit(axis));
+      }
+      EXPECT_TRUE(crowding.misleads()) << axis << ' ' << deviations;
+    }
   }
 }
 
