@@ -16,11 +16,12 @@ constexpr double kMisleads = 1.5;
 constexpr double kIsLikely = 0.8;
 
 /// Where the lorry's pull changes its side, its mean is small for a while, too: ended with the first small one, a city
-/// with a lorry beside an OS-128 (seed 21) slipped by 24 cm in a corner, and came to 0.23 instead of 0.10 %. With five
-/// in a row highways with a VLP-16 come to 0.13, 0.17 and 0.13 instead of 0.09, 0.15 and 0.08 %, two with an HDL-64 to
-/// 0.05 and 0.06 instead of 0.07 and 0.06.
+/// with a lorry beside an OS-128 (seed 21) slipped by 24 cm in a corner, and came to 0.23 instead of 0.10 %. With
+/// twenty in a row highways with a VLP-16 come to 0.09, 0.15 and 0.08 instead of 0.13, 0.17 and 0.13 %, two with an
+/// HDL-64 to 0.07 and 0.06 instead of 0.05 and 0.06, and the real drive of the tests, compensated in two stages, to 5.3
+/// cm: more than without compensation.
 constexpr double kAgrees = 0.5;
-constexpr int kAgreements = 20;
+constexpr int kAgreements = 5;
 
 /// Lorries drive along the ground: x, y and the heading. Real floors are not plain, and far ones may lie higher: along
 /// the real drive of the tests spread features have the height 2.4 standard deviations lower all the way.

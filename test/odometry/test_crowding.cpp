@@ -114,7 +114,7 @@ TEST(Crowding, WhatIsSuspectedHoldsUntilManyComparisonsAgree)
   EXPECT_TRUE(crowding.misleads());
   EXPECT_EQ(comparisonsIn(crowding, 30), 10);
   for (int i = 0; i < 40; ++i) {
-    compare(crowding, SE3(), sideways(i % 10 == 0 ? 4.0 : 0.0));  // some still disagree
+    compare(crowding, SE3(), sideways(i % 5 == 0 ? 4.0 : 0.0));  // some still disagree
   }
   EXPECT_TRUE(crowding.misleads());
   for (int i = 0; i < 30; ++i) {
