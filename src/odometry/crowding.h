@@ -23,8 +23,7 @@ public:
   /// Takes it for granted until comparisons agree again and again.
   void suspect();
 
-  /// Registrations of the same scan, with all features and with spread ones. One that has not
-  /// converged tells nothing.
+  /// Registrations of the same scan, with all features and with spread ones. One that has not converged tells nothing.
   void compare(const RegistrationReport& all, const RegistrationReport& spread);
 
   /// Whether the pose is that of the spread features.

@@ -62,7 +62,7 @@ TEST(Crowding, MisleadsWhileTheSpreadFeaturesDisagreeAgainAndAgain)
   EXPECT_TRUE(crowding.misleads());
   compare(crowding, SE3(), sideways(0.0));
   EXPECT_TRUE(crowding.misleads());  // one that agrees is not enough
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 15; ++i) {
     compare(crowding, SE3(), sideways(0.0));
   }
   EXPECT_FALSE(crowding.misleads());
@@ -117,7 +117,7 @@ TEST(Crowding, WhatIsSuspectedHoldsUntilManyComparisonsAgree)
     compare(crowding, SE3(), sideways(i % 5 == 0 ? 4.0 : 0.0));  // some still disagree
   }
   EXPECT_TRUE(crowding.misleads());
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < 5; ++i) {
     compare(crowding, SE3(), sideways(0.0));
   }
   EXPECT_FALSE(crowding.misleads());
