@@ -12,8 +12,7 @@ namespace pcl_floam {
 /// that it has not moved. Of features that are spread over the scene it has its share only. They tell less otherwise
 /// (cities with an HDL-64 come to 0.032, 0.037 and 0.027 instead of 0.025, 0.029 and 0.024 %), so they are registered
 /// beside all features now and then, and instead of them while the two disagree again and again. Cities with a lorry
-/// beside the sensor (HDL-64, seeds 21 to 23) come to 0.04, 0.07 and 0.05 % instead of 1.0, 0.9 and 1.6; highways with
-/// a VLP-16, which start ambiguously, to 0.13, 0.17 and 0.13 instead of 0.18, 0.26 and 0.15.
+/// beside the sensor (HDL-64, seeds 21 to 23) come to 0.04, 0.06 and 0.05 % instead of 1.0, 0.9 and 1.6.
 class Crowding {
 public:
   /// Whether the present scan should be compared; for each scan once. \return true for one in five; in three while
@@ -32,7 +31,8 @@ public:
 private:
   [[nodiscard]] int scansBetween() const;
 
-  int scans_since_ = 4;  ///< the last comparison; the first scan is compared
+  static constexpr int kScansBetween = 5;
+  int scans_since_ = kScansBetween - 1;  ///< the last comparison; the first scan is compared
   bool misleads_ = false;
   int agreements_ = 0;  ///< comparisons in a row whose mean was small
   /// Running mean of where the spread features have the pose: x, y and heading in the sensor's axes, in their standard

@@ -1,5 +1,7 @@
 #include "odometry/motion_model.h"
 
+#include "odometry/sensor_axes.h"
+
 #include <algorithm>
 
 namespace pcl_floam {
@@ -10,20 +12,6 @@ namespace {
 /// to lose it. With 1 the errors of 15 starts along simulated tunnels came to a median of 2.3 standard deviations in
 /// the next 300 scans. In the other modes the velocity's covariance is a constant, and large enough.
 constexpr double kVelocityErrorsPerVariance = 6.0;
-
-/// A covariance in other axes.
-Matrix6 turned(const Eigen::Matrix3d& rotation, const Matrix6& covariance)
-{
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;
-  return turn * covariance * turn.transpose();
-}
-
-/// The registered pose's covariance, in the sensor's axes.
-Matrix6 poseCovarianceInSensorAxes(const RegistrationReport& registration)
-{
-  return turned(registration.target_T_source.rotation.transpose(), registration.covariance);
-}
 
 }  // namespace
 

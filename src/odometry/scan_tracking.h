@@ -3,9 +3,9 @@
 #pragma once
 
 #include "odometry/constant_velocity.h"
-#include "odometry/crowding.h"
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
+#include "odometry/scan_registration.h"
 #include "odometry/scan_sample.h"
 #include "odometry/start_hypotheses.h"
 #include "odometry/stopwatch.h"
@@ -75,8 +75,7 @@ struct OdometryPipeline::Impl {
   OdometryReport report;
   Stopwatch watch;
   StartHypotheses starts;  ///< open for the first scans, if these are ambiguous
-  bool start_was_ambiguous = false;
-  Crowding crowding;
+  ScanRegistration scan_registration;
 
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
@@ -152,6 +151,7 @@ struct OdometryPipeline::Impl {
   void estimatePose()
   {
     report.registration = registerScan(world_T_predicted);
+    report.crowded = scan_registration.usedSpreadFeatures();
     report.milliseconds.registration += watch.lap();
   }
 
@@ -166,30 +166,7 @@ struct OdometryPipeline::Impl {
     run.spread_features = is_young;
     run.sparse_target = is_young;
     const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    const auto registered = [&](const FeatureSet& features) {
-      return registerFeatures(features, target, run, parameters.registration);
-    };
-    // Where the start was ambiguous there may be more traffic than world: a lorry beside the sensor drew a drive back
-    // by 6 m (highway with an HDL-32, seed 22; 0.1 m with features that are spread further).
-    const bool is_doubtful = is_young && start_was_ambiguous;
-    const bool compares = crowding.isDue() && !is_doubtful;
-    if (is_doubtful || (crowding.misleads() && !compares)) {
-      const RegistrationReport spread = registered(spreadSample(measured));
-      report.crowded = spread.hasConverged();
-      return report.crowded ? spread : registered(measured);
-    }
-    const RegistrationReport all = registered(measured);
-    if (!compares) {
-      return all;
-    }
-    if (!crowding.misleads() && all.hasConverged()) {  // mostly they agree, and this is the shorter way
-      run.guess = all.target_T_source;
-      run.guess_uncertainty = 0.0;
-    }
-    const RegistrationReport spread = registered(spreadSample(measured));
-    crowding.compare(all, spread);
-    report.crowded = spread.hasConverged() && (crowding.misleads() || !all.hasConverged());
-    return report.crowded ? spread : all;
+    return scan_registration.registerScan(measured, target, run, parameters.registration);
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -209,10 +186,11 @@ struct OdometryPipeline::Impl {
     }
     const FirstScan first_scan{first, initial_pose, motion, waiting.first(), waiting.others()};
     StartHypothesis start = startWith(found->twist, first_scan, parameters);
-    start_was_ambiguous = !found->others.empty();
-    if (start_was_ambiguous) {
+    if (!found->others.empty()) {
       starts = StartHypotheses(first_scan, start, found->others, parameters);
-      crowding.suspect();
+      // There may be more traffic than world: a lorry beside the sensor drew a drive back by 6 m (highway with an
+      // HDL-32, seed 22; 0.1 m with features that are spread further).
+      scan_registration.suspectCrowding();
     }
     correctPoses(start.poses);
     goOnFrom(std::move(start));

@@ -7,14 +7,16 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace pcl_floam::simulator {
 namespace {
 
 struct Outcome {
   int crowded = 0;
-  double heading_error = 0.0;  ///< degrees, at the end
-  double turn = 0.0;           ///< degrees, from the first scan to the last
+  double heading_error = 0.0;   ///< degrees, at the end
+  double position_error = 0.0;  ///< m, at the end
+  double turn = 0.0;            ///< degrees, from the first scan to the last
 };
 
 /// A city from standstill on, around the first corner.
@@ -39,7 +41,9 @@ Outcome driveThroughTown(bool lorry)
     const OdometryReport& report = odometry.track(sweep.cloud, sweep.end_time);
     outcome.crowded += report.crowded ? 1 : 0;
     const SE3 true_motion = first_T_world * sweep.world_T_end;
-    outcome.heading_error = kDegrees * log(true_motion.inverse() * report.world_T_sensor)[5];
+    const SE3 error = true_motion.inverse() * report.world_T_sensor;
+    outcome.heading_error = kDegrees * log(error)[5];
+    outcome.position_error = error.translation.norm();
     outcome.turn = kDegrees * std::abs(log(true_motion)[5]);
   }
   return outcome;
@@ -52,7 +56,10 @@ TEST(LorryBeside, DoesNotTurnTheSensorBackInACorner)
   const Outcome outcome = driveThroughTown(true);
   EXPECT_GT(outcome.turn, 60.0);
   EXPECT_LT(std::abs(outcome.heading_error), 0.3);  // 1.2 with all features
+  EXPECT_LT(outcome.position_error, 0.2);
   EXPECT_GT(outcome.crowded, 60);
+  RecordProperty("heading_error", std::to_string(outcome.heading_error));
+  RecordProperty("position_error", std::to_string(outcome.position_error));
 }
 
 TEST(LorryBeside, IsNotSuspectedWhereThereIsNone)

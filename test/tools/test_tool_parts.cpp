@@ -5,6 +5,7 @@
 #include "plot_frame.h"
 #include "pose_pairs.h"
 #include "result_writer.h"
+#include "run_summary.h"
 #include "stage_times.h"
 
 #include <pcl_floam/io/scan_source.h>
@@ -125,6 +126,19 @@ TEST(ResultWriter, PutsCorrectedPosesInPlaceOfTheLastOnes)
       expectSame(written[i].world_T_sensor, expected[i].world_T_sensor, 1e-7);
     }
   }
+}
+
+TEST(RunSummary, TellsInHowManyScansSomethingFilledTheView)
+{
+  const OdometryOptions options;
+  const OdometryPipeline odometry;
+  RunResult result;
+  const RunSummary summary{options, odometry, result, 10, {}};
+  EXPECT_EQ(toJson(summary)["scans"]["crowded"], 0);
+  EXPECT_EQ(describe(summary).find("crowded"), std::string::npos);
+  result.crowded = 7;
+  EXPECT_EQ(toJson(summary)["scans"]["crowded"], 7);
+  EXPECT_NE(describe(summary).find("in 7 scans: something seemed to fill the view"), std::string::npos);
 }
 
 TEST(TimeStatistics, AreThoseOfTheSamples)
