@@ -4,6 +4,7 @@
 #include "common/multi_version.h"
 #include "common/parameter_check.h"
 #include "filters/edge_position.h"
+#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
@@ -36,7 +37,7 @@ struct LineScratch {
   std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
   std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
   std::vector<EdgeCandidate> candidates;
-  std::vector<float> sample;  ///< of sigma
+  std::vector<float> sample;  ///< of sigma, or spacings
 };
 
 /// Sorts a line's points into those sharp enough for edges and those smooth enough for planes.
@@ -83,12 +84,18 @@ public:
   void select(std::size_t m)
   {
     line_.points.gather(cloud_, lines_, m);
-    if (line_.points.size() <= 2 * parameters_.neighbors_each_side) {
+    const LineNeighborhood neighborhood = neighborhoodIn(line_.points, parameters_.neighbors_each_side, line_.sample);
+    neighbors_ = neighborhood.each_side;
+    if (line_.points.size() <= 2 * neighbors_) {
       return;
     }
     first_index_ = static_cast<std::size_t>(lines_.begin[m]);
-    computeSmoothness(line_.points, parameters_.neighbors_each_side, parameters_.smoothness, line_.sigma);
-    markUnfit(line_.points, parameters_, line_.unfit);
+    if (neighborhood.is_sparse && parameters_.smoothness == SmoothnessKind::vector_sum) {
+      computeSmoothnessAcross(line_.points, neighbors_, line_.sigma);
+    } else {
+      computeSmoothness(line_.points, neighbors_, parameters_.smoothness, line_.sigma);
+    }
+    markUnfit(line_.points, parameters_, neighborhood, line_.unfit);
     threshold_ = edgeThreshold();  // by all points of the line, asked for or not
     markNotAsked();
     line_.sharpness.resize(line_.sigma.size());
@@ -96,7 +103,7 @@ public:
     rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), threshold_, parameters_.plane_threshold,
          line_.sharpness.data(), line_.flatness.data());
 
-    const int begin = parameters_.neighbors_each_side;
+    const int begin = neighbors_;
     const int length = line_.points.size() - 2 * begin;
     for (int sector = 0; sector < parameters_.sectors; ++sector) {
       const int first = begin + length * sector / parameters_.sectors;
@@ -123,7 +130,7 @@ private:
       return parameters_.edge_threshold;
     }
     constexpr std::size_t kSample = 128;  // enough for a median, and cheap
-    const auto ends = static_cast<std::size_t>(parameters_.neighbors_each_side);
+    const auto ends = static_cast<std::size_t>(neighbors_);
     const std::size_t step = std::max<std::size_t>(1, line_.sigma.size() / kSample);
     line_.sample.clear();
     for (std::size_t n = ends; n + ends < line_.sigma.size(); n += step) {
@@ -176,7 +183,7 @@ private:
     if (!(sharpness(n) > 0.0F)) {  // in the neighbourhood of one taken since
       return false;
     }
-    const float distance = meanNeighborDistance(line_.points, n, parameters_.neighbors_each_side);
+    const float distance = meanNeighborDistance(line_.points, n, neighbors_);
     if (!(sharpness(n) > parameters_.edge_bend * distance)) {
       return false;
     }
@@ -184,7 +191,7 @@ private:
       return true;
     }
     // Where returns are missing, a straight line's neighbours are nearer on one side: its sum is long, but along it.
-    const float across = meanDifferenceAcross(line_.points, n, parameters_.neighbors_each_side);
+    const float across = meanDifferenceAcross(line_.points, n, neighbors_);
     return isBesideDepthStep(line_.points, n) ||
            across > kAcross * std::max(threshold_, parameters_.edge_bend * distance);
   }
@@ -221,8 +228,8 @@ private:
   /// What is part of an edge's neighbourhood is neither another edge nor a plane.
   void takeNeighborhood(int from, int to)
   {
-    const int first = std::max(0, from - parameters_.neighbors_each_side);
-    const int last = std::min(line_.points.size() - 1, to + parameters_.neighbors_each_side);
+    const int first = std::max(0, from - neighbors_);
+    const int last = std::min(line_.points.size() - 1, to + neighbors_);
     for (int k = first; k <= last; ++k) {
       line_.sharpness[static_cast<std::size_t>(k)] = 0.0F;
       line_.flatness[static_cast<std::size_t>(k)] = kNeverFlat;
@@ -257,6 +264,7 @@ private:
   LineScratch& line_;
   FeatureSet& features_;
   std::size_t first_index_ = 0;
+  int neighbors_ = 0;       ///< on each side, in this line
   float threshold_ = 0.0F;  ///< of the edges' smoothness in this line
 };
 

@@ -16,6 +16,9 @@ constexpr float kDepthStep = 0.05F;
 constexpr float kAdjacent = 0.05F;
 /// Spacing to both neighbours, as a part of the range, from which incidence is called grazing (LOAM's value).
 constexpr float kGrazingSpacing = 0.0141F;
+/// Where the points of a line are that far apart anyway, so much of the squared spacing must be in depth: incidence of
+/// 63 degrees, as kGrazingSpacing has it with beams 0.36 degrees apart.
+constexpr float kGrazingDepth = 0.8F;
 
 /// Steps looked at together: most stretches of a line have no depth step at all.
 constexpr std::size_t kStretch = 16;
@@ -35,6 +38,19 @@ void markGrazing(std::size_t count, const float* range, const float* squared_ste
     const float limit = kGrazingSpacing * kGrazingSpacing * range[n] * range[n];
     unfit[n] |=
         static_cast<std::int32_t>(squared_step[n - 1] > limit) & static_cast<std::int32_t>(squared_step[n] > limit);
+  }
+}
+
+/// In a sparse line what is not mostly in depth is not grazing.
+void markGrazingInDepth(const LinePoints& line, std::vector<std::int32_t>& unfit)
+{
+  const auto isGrazing = [&line](std::size_t n) {
+    const float step = line.range[n + 1] - line.range[n];
+    return line.squared_step[n] > kGrazingSpacing * kGrazingSpacing * line.range[n] * line.range[n] &&
+           step * step > kGrazingDepth * line.squared_step[n];
+  };
+  for (std::size_t n = 1; n + 1 < unfit.size(); ++n) {
+    unfit[n] |= static_cast<std::int32_t>(isGrazing(n - 1) && isGrazing(n));
   }
 }
 
@@ -86,12 +102,17 @@ bool isBesideDepthStep(const LinePoints& line, int n)
   return findDepthSteps(2, &line.range[before], &line.squared_step[before], is_step.data()) > 0;
 }
 
-void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::int32_t>& unfit)
+void markUnfit(const LinePoints& line, const FeatureParameters& parameters, const LineNeighborhood& neighborhood,
+               std::vector<std::int32_t>& unfit)
 {
   unfit.resize(line.x.size());
   markOutOfRange(unfit.size(), line.range.data(), parameters.min_range, parameters.max_range, unfit.data());
-  markGrazing(unfit.size(), line.range.data(), line.squared_step.data(), unfit.data());
-  markOccluded(line, static_cast<std::size_t>(parameters.neighbors_each_side), unfit);
+  if (neighborhood.is_sparse) {
+    markGrazingInDepth(line, unfit);
+  } else {
+    markGrazing(unfit.size(), line.range.data(), line.squared_step.data(), unfit.data());
+  }
+  markOccluded(line, static_cast<std::size_t>(neighborhood.each_side), unfit);
 }
 
 }  // namespace pcl_floam

@@ -2,6 +2,7 @@
 /// Which points of a scan line could be features, by where they lie in it.
 #pragma once
 
+#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 
 #include <pcl_floam/filters/feature_parameters.h>
@@ -13,7 +14,8 @@ namespace pcl_floam {
 
 /// One number a point, 1 where it can't be a feature: out of range, beside a nearer surface (its neighbourhood changes
 /// with the viewpoint), or on a surface seen almost edge on. As wide as the coordinates, for the loops' sake.
-void markUnfit(const LinePoints& line, const FeatureParameters& parameters, std::vector<std::int32_t>& unfit);
+void markUnfit(const LinePoints& line, const FeatureParameters& parameters, const LineNeighborhood& neighborhood,
+               std::vector<std::int32_t>& unfit);
 
 /// Whether a surface ends at point \p n: the next point on one side lies on another, in front or behind.
 /// \pre 1 <= n < line.size() - 1

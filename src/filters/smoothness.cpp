@@ -51,6 +51,20 @@ void vectorSum(std::size_t begin, std::size_t end, std::size_t half_window, cons
   }
 }
 
+/// \return whether any point has enough neighbours; the ends have not
+bool markEnds(std::size_t half_window, std::size_t count, std::vector<float>& sigma)
+{
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  sigma.resize(count);
+  if (count <= 2 * half_window) {
+    std::fill(sigma.begin(), sigma.end(), kUnknown);
+    return false;
+  }
+  std::fill_n(sigma.begin(), half_window, kUnknown);
+  std::fill_n(sigma.rbegin(), half_window, kUnknown);
+  return true;
+}
+
 }  // namespace
 
 float meanNeighborDistance(const LinePoints& line, int n, int half_window)
@@ -87,21 +101,26 @@ float meanDifferenceAcross(const LinePoints& line, int n, int half_window)
 
 void computeSmoothness(const LinePoints& line, int half_window, SmoothnessKind kind, std::vector<float>& sigma)
 {
-  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   const auto ends = static_cast<std::size_t>(half_window);
-  sigma.resize(line.x.size());
-  if (sigma.size() <= 2 * ends) {
-    std::fill(sigma.begin(), sigma.end(), kUnknown);
+  if (!markEnds(ends, line.x.size(), sigma)) {
     return;
   }
-  std::fill_n(sigma.begin(), ends, kUnknown);
-  std::fill_n(sigma.rbegin(), ends, kUnknown);
   if (kind == SmoothnessKind::vector_sum) {
     vectorSum(ends, sigma.size() - ends, ends, line.x.data(), line.y.data(), line.z.data(), sigma.data());
     return;
   }
   for (int n = half_window; n < line.size() - half_window; ++n) {
     sigma[static_cast<std::size_t>(n)] = meanNeighborDistance(line, n, half_window);
+  }
+}
+
+void computeSmoothnessAcross(const LinePoints& line, int half_window, std::vector<float>& sigma)
+{
+  if (!markEnds(static_cast<std::size_t>(half_window), line.x.size(), sigma)) {
+    return;
+  }
+  for (int n = half_window; n < line.size() - half_window; ++n) {
+    sigma[static_cast<std::size_t>(n)] = meanDifferenceAcross(line, n, half_window);
   }
 }
 

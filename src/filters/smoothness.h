@@ -14,6 +14,10 @@ namespace pcl_floam {
 /// Points with fewer neighbours than that on a side get NaN: they are neither edges nor planes.
 void computeSmoothness(const LinePoints& line, int half_window, SmoothnessKind kind, std::vector<float>& sigma);
 
+/// The same of what lies across the line (\ref meanDifferenceAcross): where points are unevenly apart, the whole is
+/// long on a straight line, too.
+void computeSmoothnessAcross(const LinePoints& line, int half_window, std::vector<float>& sigma);
+
 /// Mean distance from point \p n to its neighbours, in m: Eq. 1 as printed, for one point.
 /// \pre half_window <= n < line.size() - half_window
 [[nodiscard]] float meanNeighborDistance(const LinePoints& line, int n, int half_window);

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 #include <set>
 
 namespace pcl_floam::test {
@@ -187,6 +188,27 @@ TEST(FeatureExtraction, NothingOnTheFarSideOfADepthStepIsAnEdge)
   EXPECT_FALSE(features.planes.empty());
   for (const Feature& edge : features.edges) {
     EXPECT_GT(std::abs(edge.y), 3.0F);
+  }
+}
+
+TEST(FeatureExtraction, WallsArePlanesWhereNineInTenReturnsAreMissing)
+{
+  const Room room = emptyRoom();
+  const auto cloud = scanOf(room);
+  std::mt19937 random(1);
+  auto sparse = pcl::make_shared<pcl::PointCloud<PointXYZIRT>>();
+  for (const PointXYZIRT& point : *cloud) {
+    if (random() % 10 == 0) {
+      sparse->push_back(point);
+    }
+  }
+  FeatureSet features;
+  Extraction extraction;
+  extraction.setInputCloud(sparse);
+  ASSERT_TRUE(extraction.extract(features));
+  EXPECT_GT(features.planes.size(), sparse->size() / 2);
+  for (const Feature& plane : features.planes) {
+    EXPECT_LT(distancesFromWalls(room, plane.x, plane.y).first, 1e-4);
   }
 }
 

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
 namespace pcl_floam::test {
 namespace {
 
@@ -100,6 +105,49 @@ TEST(Smoothness, ShortLinesHaveNone)
       EXPECT_TRUE(std::isnan(value));
     }
   }
+}
+
+TEST(Smoothness, AcrossIsZeroOnALineHoweverItsPointsAreSpaced)
+{
+  std::mt19937 random(2);
+  std::vector<Eigen::Vector3d> points;
+  double along = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    along += 0.05 + std::abs(uniform(random, 1.0));
+    points.push_back(Eigen::Vector3d(3.0, -1.0, 0.5) + along * Eigen::Vector3d(0.6, 0.8, 0.0));
+  }
+  std::vector<float> across;
+  computeSmoothnessAcross(lineOf(points), 2, across);
+  const std::vector<float> whole = smoothness(points, 2, SmoothnessKind::vector_sum);
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const bool has_neighbors = n >= 2 && n < points.size() - 2;
+    EXPECT_EQ(std::isnan(across[n]), !has_neighbors) << n;
+    if (has_neighbors) {
+      EXPECT_NEAR(across[n], 0.0F, 1e-5F);
+    }
+  }
+  EXPECT_GT(*std::max_element(whole.begin() + 2, whole.end() - 2), 0.1F);
+}
+
+TEST(Smoothness, AcrossIsTheWholeAtACornerOfEvenPoints)
+{
+  std::vector<Eigen::Vector3d> points;
+  for (int i = -5; i <= 5; ++i) {
+    points.emplace_back(3.0 + 0.1 * std::min(i, 0), 2.0 + 0.1 * std::max(i, 0), 0.0);
+  }
+  std::vector<float> across;
+  computeSmoothnessAcross(lineOf(points), 5, across);
+  const float whole = smoothness(points, 5, SmoothnessKind::vector_sum)[5];
+  EXPECT_GT(whole, 0.1F);
+  EXPECT_NEAR(across[5], whole, 1e-6F);
+}
+
+TEST(Smoothness, AcrossIsUnknownInLinesThatAreTooShort)
+{
+  std::vector<float> across;
+  computeSmoothnessAcross(lineOf(randomPoints(4)), 2, across);
+  EXPECT_EQ(across.size(), 4U);
+  EXPECT_TRUE(std::all_of(across.begin(), across.end(), [](float sigma) { return std::isnan(sigma); }));
 }
 
 }  // namespace

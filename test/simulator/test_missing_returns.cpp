@@ -1,0 +1,55 @@
+// Drives of which nine in ten returns are missing, from the first scan on.
+
+#include "simulation.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace pcl_floam::simulator {
+
+struct Drive {
+  std::string world;
+  std::string sensor;
+  double error;  ///< m, at most
+};
+
+class MissingReturns : public testing::TestWithParam<Drive> {};
+
+TEST_P(MissingReturns, NineInTenLoseNothing)
+{
+  constexpr std::size_t kScans = 60;
+  constexpr double kPeriod = 0.1;  // s
+  SimulationOptions options;
+  options.world = GetParam().world;
+  options.sensor = GetParam().sensor;
+  options.seed = 21;
+  options.dropout = 0.9;
+  Simulation simulation(options);
+  Odometry<PointXYZIRT> odometry;
+  SE3 world_T_first;
+  SE3 error;
+  double way = 0.0;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    if (i == 0) {
+      world_T_first = sweep.world_T_end;
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud, kPeriod * static_cast<double>(i));
+    EXPECT_EQ(report.state, i == 0 ? TrackingState::initialized : TrackingState::tracked) << i;
+    const SE3 first_T_sensor = world_T_first.inverse() * sweep.world_T_end;
+    error = first_T_sensor.inverse() * report.world_T_sensor;
+    way = first_T_sensor.translation.norm();
+  }
+  RecordProperty("error", std::to_string(error.translation.norm()));
+  EXPECT_LT(error.translation.norm(), GetParam().error) << "after " << way << " m";
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, MissingReturns,
+                         testing::Values(Drive{"warehouse", "vlp16", 0.03}, Drive{"room", "vlp16", 0.03},
+                                         Drive{"urban", "hdl64", 0.15}, Drive{"highway", "hdl64", 0.5}),
+                         [](const auto& drive) { return drive.param.world; });
+
+}  // namespace pcl_floam::simulator
