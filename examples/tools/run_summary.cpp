@@ -108,7 +108,7 @@ std::string describe(const RunSummary& summary)
                       result.with_weak_directions);
   }
   if (result.crowded > 0) {
-    text += formatted("\n%-22s in %zu scans: something seemed to fill the view, spread features were used", "crowded",
+    text += formatted("\n%-22s in %zu scans: their poses are those of features spread over the scene", "crowded",
                       result.crowded);
   }
   text += formatted("\n%-22s median %.1f ms, 95 %% below %.1f ms", "time per scan", total.median, total.p95);

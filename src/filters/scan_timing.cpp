@@ -60,8 +60,10 @@ bool timingFromField(const CloudView& cloud, int threads, ScanTiming& timing)
   if (!(last > first)) {  // empty, or a field that the driver left constant
     return false;
   }
-  // Times after the sweep's start begin near zero: then zero is the start, also when the first returns are missing.
-  if (first > 0.0 && first < last - first) {
+  // Times after the sweep's start begin near zero: then zero is the start, also when the first returns are missing. A
+  // sensor that sees 120 degrees ahead begins a third into the turn, as late as its returns last: it must not waver.
+  constexpr double kNearZero = 0.75;  // of the time that the returns last
+  if (first > 0.0 && first < kNearZero * (last - first)) {
     first = 0.0;
   }
   timing.source = ScanTimingSource::time_field;

@@ -32,6 +32,12 @@ constexpr std::array<int, 3> kAlongTheGround = {0, 1, 5};
 /// One comparison must not decide alone.
 constexpr double kMostOfOne = 4.0;
 
+/// Along directions that are not seen both keep to the prediction, and agree whatever fills the view.
+bool tells(const RegistrationReport& report)
+{
+  return report.hasConverged() && report.weak_directions.empty();
+}
+
 }  // namespace
 
 bool Crowding::isDue()
@@ -60,7 +66,7 @@ void Crowding::suspect()
 
 void Crowding::compare(const RegistrationReport& all, const RegistrationReport& spread)
 {
-  if (!all.hasConverged() || !spread.hasConverged()) {
+  if (!tells(all) || !tells(spread)) {
     return;
   }
   const Vector6 difference = log(all.target_T_source.inverse() * spread.target_T_source);

@@ -22,7 +22,8 @@ public:
   /// Takes it for granted until comparisons agree again and again.
   void suspect();
 
-  /// Registrations of the same scan, with all features and with spread ones. One that has not converged tells nothing.
+  /// Registrations of the same scan, with all features and with spread ones. One that has not converged, or does not
+  /// see all directions, tells nothing.
   void compare(const RegistrationReport& all, const RegistrationReport& spread);
 
   /// Whether the pose is that of the spread features.

@@ -1,5 +1,6 @@
 #include "odometry/first_motion.h"
 
+#include "odometry/best_fit.h"
 #include "registration/feature_sampling.h"
 
 #include <pcl_floam/filters/sweep_motion.h>
@@ -8,14 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace pcl_floam {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A motion that both scans were compensated with, and what their registration made of it.
 struct Candidate {
@@ -133,27 +131,14 @@ private:
     return bestOfTried();
   }
 
-  /// Of those that link about as many features as any does, the one with the least residuals; rest, if it is one of
-  /// them, unless it is clearly worse.
   [[nodiscard]] const Candidate& bestOfTried() const
   {
-    constexpr double kResiduals = 0.9;        // of those from rest, at most
-    constexpr double kCorrespondences = 0.8;  // of the most, at least
-    const auto linked = [](const Candidate& c) { return c.report.hasConverged() ? c.correspondences() : 0; };
-    int most = 0;
+    std::vector<RegistrationReport> reports;
     for (const Candidate& candidate : tried_) {
-      most = std::max(most, linked(candidate));
+      reports.push_back(candidate.report);
     }
-    const auto isEligible = [&](const Candidate& c) { return most > 0 && linked(c) >= kCorrespondences * most; };
-    const Candidate* best = &tried_.front();
-    double residual = isEligible(*best) ? kResiduals * best->report.residual_rms : kInfinity;
-    for (std::size_t i = 1; i < tried_.size(); ++i) {
-      if (isEligible(tried_[i]) && tried_[i].report.residual_rms < residual) {
-        best = &tried_[i];
-        residual = best->report.residual_rms;
-      }
-    }
-    return *best;
+    constexpr double kClearlyBetter = 0.9;
+    return tried_[bestFit(reports, kClearlyBetter)];
   }
 
   /// Of the motions that were tried, those quite different from what was found that link and fit features not much
@@ -247,19 +232,6 @@ private:
 };
 
 }  // namespace
-
-FeatureSet spreadSample(const FeatureSet& features)
-{
-  constexpr std::size_t kEnough = 500;
-  FeatureSet sample;
-  for (const float cell : {2.0F, 1.0F, 0.5F, 0.25F}) {  // m
-    sample = {atMostPerCell(features.edges, cell, 1), atMostPerCell(features.planes, cell, 1)};
-    if (sample.edges.size() + sample.planes.size() >= kEnough) {
-      return sample;
-    }
-  }
-  return features;
-}
 
 std::optional<FirstMotion> findFirstMotion(const FirstScans& scans, const OdometryParameters& parameters,
                                            RegistrationReport& report)

@@ -34,13 +34,6 @@ inline bool areApart(const Vector6& a, const Vector6& b)
   return (a - b).head<3>().norm() > kApart;
 }
 
-/// Features spread evenly over the scene: the start is chosen by how well these are explained, and where a part of the
-/// view draws the pose away (\ref Crowding) they alone are registered.
-///
-/// With every so many-th feature instead, 11 of 38 starts among traffic at 25 m/s (simulated highways) took the traffic
-/// for the world; with these 1 of 112. What is small, as a room, needs smaller cells.
-[[nodiscard]] FeatureSet spreadSample(const FeatureSet& features);
-
 /// \return the motion, or nothing and a \p report that says why
 [[nodiscard]] std::optional<FirstMotion> findFirstMotion(const FirstScans& scans, const OdometryParameters& parameters,
                                                          RegistrationReport& report);

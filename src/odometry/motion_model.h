@@ -76,6 +76,9 @@ public:
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
 
+  /// Of the last scan that was tracked.
+  [[nodiscard]] const SE3& trackedPose() const { return tracked_pose_; }
+
   /// Motion during the present sweep, as it was registered or, without, as assumed.
   [[nodiscard]] const SweepMotion& sweep() const { return sweep_; }
 

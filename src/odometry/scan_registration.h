@@ -12,8 +12,13 @@ namespace pcl_floam {
 /// The pose estimation of the odometry (Eq. 5 to 14), and what it remembers from scan to scan of crowded views.
 class ScanRegistration {
 public:
-  /// Takes it for granted that what fills a part of the view misleads, until comparisons agree again and again.
-  void suspectCrowding() { crowding_.suspect(); }
+  /// Takes it for granted that what fills a part of the view misleads, until comparisons agree again and again; those
+  /// so far don't count any more.
+  void suspectCrowding()
+  {
+    crowding_ = Crowding();
+    crowding_.suspect();
+  }
 
   [[nodiscard]] RegistrationReport registerScan(const FeatureSet& measured, const FeatureTarget& target,
                                                 const RegistrationRun& run, const RegistrationParameters& parameters);

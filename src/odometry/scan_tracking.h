@@ -5,6 +5,7 @@
 #include "odometry/constant_velocity.h"
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
+#include "odometry/relocalization.h"
 #include "odometry/scan_registration.h"
 #include "odometry/scan_sample.h"
 #include "odometry/start_hypotheses.h"
@@ -72,6 +73,7 @@ struct OdometryPipeline::Impl {
   double periods = 1.0;         ///< since the last scan
   double sweep_fraction = 1.0;  ///< duration of the sweep in periods
   SE3 world_T_predicted;
+  double prediction_bound = 0.0;  ///< m, of its error
   OdometryReport report;
   Stopwatch watch;
   StartHypotheses starts;  ///< open for the first scans, if these are ambiguous
@@ -145,28 +147,41 @@ struct OdometryPipeline::Impl {
   }
 
   // Motion Estimation (Eq. 2)
-  void predictMotion() { world_T_predicted = motion.predictedPose(); }
+  void predictMotion()
+  {
+    constexpr double kLong = 3.5;         // periods: a car's motion is known for longer, a hand's is not
+    constexpr double kRelocalized = 0.3;  // m
+    world_T_predicted = motion.predictedPose();
+    prediction_bound = motion.predictionBound();
+    if (motion.isKnown() && motion.periodsSinceTracked() > kLong) {
+      world_T_predicted = relocalize(measured, target(), registrationFrom(world_T_predicted), parameters.registration,
+                                     motion.trackedPose());
+      prediction_bound = kRelocalized;
+    }
+  }
 
   // Pose Estimation (Eq. 5 to 14)
   void estimatePose()
   {
-    report.registration = registerScan(world_T_predicted);
+    report.registration = scan_registration.registerScan(measured, target(), registrationFrom(world_T_predicted),
+                                                         parameters.registration);
     report.crowded = scan_registration.usedSpreadFeatures();
     report.milliseconds.registration += watch.lap();
   }
 
-  RegistrationReport registerScan(const SE3& guess)
+  [[nodiscard]] FeatureTarget target() { return {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}; }
+
+  RegistrationRun registrationFrom(const SE3& guess)
   {
     RegistrationRun run;
     run.guess = guess;
-    run.guess_uncertainty = motion.predictionBound();
+    run.guess_uncertainty = prediction_bound;
     run.threads = parameters.threads;
     run.sweep = motion.sweepModel(guess);
     const bool is_young = !prior_map && keyframes < kYoungMap;
     run.spread_features = is_young;
     run.sparse_target = is_young;
-    const FeatureTarget target{&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)};
-    return scan_registration.registerScan(measured, target, run, parameters.registration);
+    return run;
   }
 
   /// The second scan: its motion and the first one's are found together, and the map is built anew with them.
@@ -190,7 +205,7 @@ struct OdometryPipeline::Impl {
       starts = StartHypotheses(first_scan, start, found->others, parameters);
       // There may be more traffic than world: a lorry beside the sensor drew a drive back by 6 m (highway with an
       // HDL-32, seed 22; 0.1 m with features that are spread further).
-      scan_registration.suspectCrowding();
+      scan_registration.suspectCrowding();  // from this scan on
     }
     correctPoses(start.poses);
     goOnFrom(std::move(start));
@@ -213,6 +228,8 @@ struct OdometryPipeline::Impl {
       start->poses.pop_back();  // this scan's own
       correctPoses(start->poses);
       goOnFrom(std::move(*start));
+      report.crowded = true;                // starts are followed with spread features
+      scan_registration.suspectCrowding();  // what was compared so far was so in another map
     }
     return start.has_value();
   }

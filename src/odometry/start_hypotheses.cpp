@@ -1,6 +1,7 @@
 #include "odometry/start_hypotheses.h"
 
 #include "odometry/first_motion.h"
+#include "registration/feature_sampling.h"
 
 #include <pcl_floam/filters/motion_compensation.h>
 #include <pcl_floam/registration/feature_registration.h>

@@ -76,4 +76,17 @@ std::vector<Feature> atMostPerCell(const std::vector<Feature>& features, float c
   return result;
 }
 
+FeatureSet spreadSample(const FeatureSet& features)
+{
+  constexpr std::size_t kEnough = 500;
+  FeatureSet sample;
+  for (const float cell : {2.0F, 1.0F, 0.5F, 0.25F}) {  // m
+    sample = {atMostPerCell(features.edges, cell, 1), atMostPerCell(features.planes, cell, 1)};
+    if (sample.edges.size() + sample.planes.size() >= kEnough) {
+      return sample;
+    }
+  }
+  return features;
+}
+
 }  // namespace pcl_floam

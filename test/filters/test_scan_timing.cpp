@@ -147,6 +147,21 @@ TEST(ScanTiming, MissingFirstReturnsDoNotShiftRelativeTimes)
   EXPECT_LT(worstError(timingOf(viewOf(cloud)), viewOf(cloud), returns), 1e-5);
 }
 
+TEST(ScanTiming, AViewOfAThirdOfTheTurnDoesNotWaver)
+{
+  const auto sweep = sweepRoom(Room(), smallLidar());
+  const std::size_t third = sweep.size() / 3;
+  constexpr std::size_t kFew = 16 * 3;  // columns at either end that once are there and once are not
+  std::vector<double> starts;
+  for (const auto& [from, to] : {std::make_pair(third - kFew, 2 * third + kFew), {third + kFew, 2 * third - kFew}}) {
+    const auto cloud =
+        toCloud({sweep.begin() + static_cast<std::ptrdiff_t>(from), sweep.begin() + static_cast<std::ptrdiff_t>(to)});
+    starts.push_back(timingOf(viewOf(cloud)).start);
+  }
+  EXPECT_NEAR(starts[0], starts[1], 0.003);
+  EXPECT_NEAR(starts[0], 0.033, 0.003);
+}
+
 TEST(ScanTiming, FromTheColumnsOfAnOrganisedCloud)
 {
   auto returns = sweepRoom(Room(), smallLidar());

@@ -39,6 +39,7 @@ int comparisonsIn(Crowding& crowding, int scans)
 
 TEST(Crowding, IsComparedInOneScanOfFiveAndMoreOftenInDoubt)
 {
+  EXPECT_TRUE(Crowding().isDue()) << "the first scan";
   Crowding crowding;
   EXPECT_EQ(comparisonsIn(crowding, 30), 6);
   for (int i = 0; i < 10; ++i) {
@@ -146,6 +147,19 @@ TEST(Crowding, IsNotWhatHasTheGroundHigherOrTilted)
     }
     EXPECT_FALSE(crowding.misleads());
   }
+}
+
+TEST(Crowding, WhatDoesNotSeeAllDirectionsTellsNothing)
+{
+  Crowding crowding;
+  crowding.suspect();
+  RegistrationReport weak = converged(SE3());
+  weak.weak_directions.push_back({Vector6::Unit(0), 1e-6});
+  for (int i = 0; i < 30; ++i) {
+    crowding.compare(converged(SE3()), weak);
+    crowding.compare(weak, converged(SE3()));
+  }
+  EXPECT_TRUE(crowding.misleads()) << "that they agree along that direction is no agreement";
 }
 
 TEST(Crowding, TakesNothingFromWhatIsLockedOrHasFailed)

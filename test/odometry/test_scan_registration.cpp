@@ -57,7 +57,7 @@ protected:
 
 TEST_F(ScanRegistrationTest, AllFeaturesGiveThePoseAsLongAsTheSpreadOnesAgree)
 {
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 30; ++i) {
     const RegistrationReport report = registerScan();
     EXPECT_TRUE(report.hasConverged());
     EXPECT_EQ(report.target_T_source.translation, registerAll().target_T_source.translation);
@@ -74,6 +74,41 @@ TEST_F(ScanRegistrationTest, SuspectedAtFirstTheSpreadOnesGiveIt)
     EXPECT_TRUE(report.hasConverged());
     EXPECT_LT(error(report), 0.02);
     EXPECT_NE(report.target_T_source.translation, registerAll().target_T_source.translation);
+  }
+}
+
+TEST_F(ScanRegistrationTest, SuspicionEndsWhereBothAgree)
+{
+  const FeatureSet exact = scan_;
+  std::mt19937 random(1);
+  std::normal_distribution<float> noise(0.0F, 0.02F);
+  scan_registration_.suspectCrowding();
+  int scans = 0;
+  do {
+    scan_ = exact;
+    for (std::vector<Feature>* features : {&scan_.edges, &scan_.planes}) {
+      for (Feature& feature : *features) {
+        feature.x += noise(random);
+        feature.y += noise(random);
+        feature.z += noise(random);
+      }
+    }
+    EXPECT_TRUE(registerScan().hasConverged());
+  } while (++scans < 100 && scan_registration_.usedSpreadFeatures());
+  EXPECT_GT(scans, 10);
+  EXPECT_LT(scans, 30);
+  EXPECT_EQ(registerScan().target_T_source.translation, registerAll().target_T_source.translation);
+}
+
+TEST_F(ScanRegistrationTest, FewFeaturesAreAllTaken)
+{
+  for (std::vector<Feature>* features : {&scan_.edges, &scan_.planes}) {
+    features->resize(features->size() * 300 / scan_.planes.size());
+  }
+  scan_registration_.suspectCrowding();
+  for (int i = 0; i < 30; ++i) {
+    EXPECT_TRUE(registerScan().hasConverged());
+    EXPECT_FALSE(scan_registration_.usedSpreadFeatures());
   }
 }
 

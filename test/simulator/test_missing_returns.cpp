@@ -1,4 +1,4 @@
-// Drives of which nine in ten returns are missing, from the first scan on.
+// Drives of which nine in ten returns are missing, from the first scan on, or all for a second.
 
 #include "simulation.h"
 
@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
 
 namespace pcl_floam::simulator {
@@ -51,5 +53,41 @@ INSTANTIATE_TEST_SUITE_P(Worlds, MissingReturns,
                          testing::Values(Drive{"warehouse", "vlp16", 0.03}, Drive{"room", "vlp16", 0.03},
                                          Drive{"urban", "hdl64", 0.15}, Drive{"highway", "hdl64", 0.5}),
                          [](const auto& drive) { return drive.param.world; });
+
+/// Swung by hand, a sensor turns by anything while it sees nothing.
+TEST(SecondWithoutReturns, IsPredictedOverAndThePoseFoundAgain)
+{
+  constexpr std::size_t kScans = 50;
+  constexpr double kPeriod = 0.1;  // s
+  SimulationOptions options;
+  options.world = "handheld";
+  options.seed = 21;
+  options.start = 3.0;
+  options.gap_from = 2.0;
+  options.gap_to = 3.0;
+  Simulation simulation(options);
+  Odometry<PointXYZIRT> odometry;
+  SE3 world_T_first;
+  int predicted = 0;
+  double wrongly_predicted = 0.0;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    if (i == 0) {
+      world_T_first = sweep.world_T_end;
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud, kPeriod * static_cast<double>(i));
+    const SE3 error = (world_T_first.inverse() * sweep.world_T_end).inverse() * report.world_T_sensor;
+    if (report.state == TrackingState::predicted) {
+      ++predicted;
+      wrongly_predicted = std::max(wrongly_predicted, rotationAngle(error.rotation));
+    } else {
+      EXPECT_LT(error.translation.norm(), 0.05) << i;
+      EXPECT_LT(rotationAngle(error.rotation), 0.02) << i;
+    }
+  }
+  EXPECT_GE(predicted, 9);
+  EXPECT_LE(predicted, 11);
+  EXPECT_GT(wrongly_predicted, 1.0) << "rad; else there was nothing to find";
+}
 
 }  // namespace pcl_floam::simulator

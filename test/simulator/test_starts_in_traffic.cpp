@@ -141,6 +141,7 @@ TEST_P(AmbiguousStarts, TheNextScansTell)
   for (int number = 0; number < kScans; ++number) {
     const OdometryReport& report = scans.next();
     changes += report.state == TrackingState::tracked && !report.reason.empty() ? 1 : 0;
+    EXPECT_EQ(report.crowded, number > 0) << number << ": traffic still has most of the points";
     if (number >= kSettled) {
       EXPECT_LT(scans.motionError(), 0.3) << number;
       EXPECT_LT(scans.wayError(), 1.0) << number;

@@ -138,7 +138,7 @@ TEST(RunSummary, TellsInHowManyScansSomethingFilledTheView)
   EXPECT_EQ(describe(summary).find("crowded"), std::string::npos);
   result.crowded = 7;
   EXPECT_EQ(toJson(summary)["scans"]["crowded"], 7);
-  EXPECT_NE(describe(summary).find("in 7 scans: something seemed to fill the view"), std::string::npos);
+  EXPECT_NE(describe(summary).find("in 7 scans: their poses are those of features spread"), std::string::npos);
 }
 
 TEST(TimeStatistics, AreThoseOfTheSamples)

@@ -51,8 +51,8 @@ struct OdometryReport {
   std::vector<SE3> corrected_poses;
   /// The pose is that of features that are spread evenly over the scene, instead of all: after a start among cars that
   /// could be taken for the world, and where what fills a part of the view, such as a lorry beside the sensor, draws
-  /// the pose away from where the rest of the scene has it; until the two have agreed for long; and where all of them
-  /// could not be registered.
+  /// the pose away from where the rest of the scene has it, until the two have agreed in several scans; and where all
+  /// of them could not be registered. Scans of which the spread features could not be registered have all, in between.
   bool crowded = false;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
