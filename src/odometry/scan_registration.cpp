@@ -31,7 +31,7 @@ RegistrationReport ScanRegistration::registerScan(const FeatureSet& measured, co
     used_spread_features_ = spread.hasConverged();
     return used_spread_features_ ? spread : registerFeatures(measured, target, run, parameters);
   }
-  const RegistrationReport all = registerFeatures(measured, target, run, parameters);
+  RegistrationReport all = registerFeatures(measured, target, run, parameters);
   if (!compares && all.hasConverged()) {
     return all;
   }
