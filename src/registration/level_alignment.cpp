@@ -112,12 +112,12 @@ void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)
   for (std::size_t j = 0; j < target_.number.size(); ++j) {
     position[target_.number[j]] = static_cast<int>(j);
   }
-  const SE3 frame_T_origin = target_T_source * pose.inverse();  // as seen from the target's origin
+  const std::vector<int> nearest = run_.search(source_.number, target_T_source);
   for (std::size_t i = 0; i < match_.size(); ++i) {
     match_[i] = -1;
-    const Eigen::Vector3d local = pose * source_.tree.points()[i].cast<double>();
-    const auto found = position.find(run_.search(source_.number[i], frame_T_origin * local));
+    const auto found = position.find(nearest[i]);
     if (found != position.end()) {
+      const Eigen::Vector3d local = pose * source_.tree.points()[i].cast<double>();
       const Eigen::Vector3d there = target_.tree.points()[static_cast<std::size_t>(found->second)].cast<double>();
       const double squared = (there - local).squaredNorm();
       if (squared <= gate_ * gate_) {

@@ -86,6 +86,7 @@ private:
     }
     narrow();
   }
+  /// \param pose, target_T_source the same between the pyramids' origins and between the clouds' frames
   void askUsersSearch(const SE3& pose, const SE3& target_T_source);
   void searchNearest(const SE3& pose);
   void searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound);

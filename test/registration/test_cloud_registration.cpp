@@ -54,7 +54,7 @@ double difference(const Cloud& cloud, const Eigen::Matrix4d& a, const Eigen::Mat
 
 Eigen::Matrix4d turned(double degrees, const Eigen::Vector3d& axis, const Eigen::Vector3d& shift)
 {
-  const Eigen::Vector3d centre(2.0, 1.0, 0.7);
+  const Eigen::Vector3d centre = Eigen::Vector3d(2.0, 1.0, 0.7) + farOff();
   const Eigen::Matrix3d rotation = expSO3(degrees * kPi / 180.0 * axis.normalized());
   return SE3(rotation, centre + shift - rotation * centre).matrix();
 }
@@ -187,10 +187,11 @@ TEST(CloudRegistration, WithoutStructureItIsDrawnPointToPoint)
   for (int i = 0; i < 400; ++i) {
     Point point;
     point.getVector3fMap() =
-        Eigen::Vector3d(uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0)).cast<float>();
+        (farOff() + Eigen::Vector3d(uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0))).cast<float>();
     target->push_back(point);
   }
-  const Eigen::Matrix4d truth = exp((Vector6() << 0.02, -0.01, 0.03, 0.02, -0.03, 0.01).finished()).matrix();
+  const Eigen::Matrix4d truth =
+      motionThere(exp((Vector6() << 0.02, -0.01, 0.03, 0.02, -0.03, 0.01).finished())).matrix();
   const auto source = moved(*target, truth.inverse());
   const Result result = align(source, target);
   ASSERT_TRUE(result.converged);

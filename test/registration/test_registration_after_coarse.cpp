@@ -24,8 +24,7 @@ using CloudN = pcl::PointCloud<PointN>;
 
 /// Far more than any registration finds that starts from nothing.
 const Eigen::Matrix4f kFarMotion =
-    (Eigen::Translation3f(1.5F, -0.7F, 0.4F) * Eigen::AngleAxisf(2.6F, Eigen::Vector3f(0.3F, 0.5F, 0.8F).normalized()))
-        .matrix();
+    motionThere(SE3(expSO3(2.6 * Eigen::Vector3d(0.3, 0.5, 0.8).normalized()), {1.5, -0.7, 0.4})).matrix<float>();
 
 /// Every n-th point: searches without a guess go through all pairs of points.
 CloudN::Ptr everyNth(const CloudN& cloud, std::size_t n)
@@ -191,6 +190,9 @@ pcl::CorrespondencesPtr correspondencesOf(const Cloud::Ptr& source, const Cloud:
 
 TEST(RegistrationComposition, CorrespondencesForLum)
 {
+  if (!farOff().isZero()) {
+    GTEST_SKIP() << "LUM itself takes small angles about the origin for small ways";
+  }
   pcl::registration::LUM<Point> lum;
   std::vector<Cloud::Ptr> clouds;
   std::vector<Eigen::Matrix4f> poses;

@@ -1,10 +1,15 @@
 // Search objects and estimations of the user's own, and a guess that is no rigid motion.
+#include "support/cloud_normals.h"
 #include "support/object_pair.h"
+
+#include <pcl_floam/map/map_search.h>
 
 #include <pcl/registration/transformation_estimation_svd.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace pcl_floam::test {
@@ -29,6 +34,167 @@ TEST(RegistrationReplacedParts, ASearchObjectNotToBeRecomputedIsUsedAsItIs)
     EXPECT_EQ(match.index_match % 2, 0);
   }
   EXPECT_EQ(tree->getIndices(), pcl::IndicesConstPtr(few));
+}
+
+/// Positions, and a fourth number that all points share.
+class WithIntensity : public pcl::PointRepresentation<Point> {
+public:
+  WithIntensity() { nr_dimensions_ = 4; }
+  void copyToFloatArray(const Point& point, float* out) const override
+  {
+    std::copy_n(point.data, 3, out);
+    out[3] = point.intensity;
+  }
+};
+
+/// A class that the library does not know.
+class OwnTree : public pcl::search::KdTree<Point> {};
+
+/// Gives a registration a search of the user's own that finds the nearest points.
+using SetsSearch = void (*)(EdgePlaneRegistration<Point, Point>&, const Cloud::Ptr& target);
+
+void setFixedTree(EdgePlaneRegistration<Point, Point>& registration, const Cloud::Ptr& target)
+{
+  auto tree = pcl::make_shared<pcl::search::KdTree<Point>>();
+  tree->setInputCloud(target);
+  registration.setSearchMethodTarget(tree, true);
+}
+
+void setRepresentation(EdgePlaneRegistration<Point, Point>& registration, const Cloud::Ptr&)
+{
+  registration.setPointRepresentation(pcl::make_shared<const WithIntensity>());
+}
+
+void setOwnTree(EdgePlaneRegistration<Point, Point>& registration, const Cloud::Ptr&)
+{
+  registration.setSearchMethodTarget(pcl::make_shared<OwnTree>());
+}
+
+void setMapSearch(EdgePlaneRegistration<Point, Point>& registration, const Cloud::Ptr&)
+{
+  registration.setSearchMethodTarget(pcl::make_shared<MapSearch<Point>>());
+}
+
+class SearchOfTheUsersOwn : public ::testing::TestWithParam<SetsSearch> {};
+
+TEST_P(SearchOfTheUsersOwn, FindsACloudThatWasMovedByACentimetre)
+{
+  std::mt19937 random(7);
+  const auto target = pcl::make_shared<Cloud>();
+  for (int i = 0; i < 2000; ++i) {
+    Point point;
+    point.getVector3fMap() =
+        (farOff() + Eigen::Vector3d(5.0 + uniform(random, 1.0), uniform(random, 1.0), uniform(random, 1.0)))
+            .cast<float>();
+    target->push_back(point);
+  }
+  const auto source = pcl::make_shared<Cloud>(*target);
+  for (Point& point : *source) {
+    point.x += 0.01F;
+  }
+  EdgePlaneRegistration<Point, Point> registration;
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  GetParam()(registration, target);
+  Cloud output;
+  registration.align(output);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_NEAR(registration.getFinalTransformation()(0, 3), -0.0100F, 1e-4F);
+  EXPECT_LT(disagreement(*source, registration.getFinalTransformation(),
+                         Eigen::Affine3f(Eigen::Translation3f(-0.01F, 0.0F, 0.0F)).matrix()),
+            1e-4);
+}
+
+TEST_P(SearchOfTheUsersOwn, FindsAnObject)
+{
+  ObjectPair setup;
+  for (const auto& cloud : {setup.source, setup.target}) {
+    for (Point& point : *cloud) {
+      point.intensity = 0.0F;
+    }
+  }
+  GetParam()(setup.registration, setup.target);
+  EXPECT_LT(setup.align(), 0.005);
+  EXPECT_TRUE(setup.registration.hasConverged());
+}
+
+INSTANTIATE_TEST_SUITE_P(EachKind, SearchOfTheUsersOwn,
+                         ::testing::Values(&setFixedTree, &setRepresentation, &setOwnTree, &setMapSearch));
+
+/// Of PCL's tutorial "How to incrementally register pairs of clouds".
+class WithCurvature : public pcl::PointRepresentation<pcl::PointNormal> {
+public:
+  WithCurvature() { nr_dimensions_ = 4; }
+  void copyToFloatArray(const pcl::PointNormal& point, float* out) const override
+  {
+    std::copy_n(point.data, 3, out);
+    out[3] = point.curvature;
+  }
+};
+
+TEST(RegistrationReplacedParts, ThePairwiseTutorialEndsWhereItShould)
+{
+  using CloudN = pcl::PointCloud<pcl::PointNormal>;
+  const ObjectPair pair;
+  const auto target = withNormals<pcl::PointNormal>(pair.target);
+  auto source = withNormals<pcl::PointNormal>(pair.source);
+  auto representation = pcl::make_shared<WithCurvature>();
+  const float alpha[4] = {1.0F, 1.0F, 1.0F, 1.0F};
+  representation->setRescaleValues(alpha);
+  EdgePlaneRegistration<pcl::PointNormal, pcl::PointNormal> registration;
+  registration.setTransformationEpsilon(1e-6);
+  registration.setMaxCorrespondenceDistance(0.1);
+  registration.setPointRepresentation(representation);
+  registration.setInputTarget(target);
+  registration.setMaximumIterations(2);
+  Eigen::Matrix4f total = Eigen::Matrix4f::Identity();
+  Eigen::Matrix4f last = Eigen::Matrix4f::Zero();
+  for (int i = 0; i < 30; ++i) {
+    registration.setInputSource(source);
+    const auto moved = pcl::make_shared<CloudN>();
+    registration.align(*moved);
+    ASSERT_TRUE(registration.hasConverged()) << i;
+    source = moved;
+    total = registration.getFinalTransformation() * total;
+    if (std::abs((registration.getLastIncrementalTransformation() - last).sum()) <
+        registration.getTransformationEpsilon()) {
+      registration.setMaxCorrespondenceDistance(registration.getMaxCorrespondenceDistance() - 0.001);
+    }
+    last = registration.getLastIncrementalTransformation();
+  }
+  EXPECT_LT(disagreement(*pair.source, total, motion(1.0)), 0.005);
+}
+
+/// Tells points of different normals apart, as a registration has turned them.
+class WithNormal : public pcl::PointRepresentation<pcl::PointNormal> {
+public:
+  WithNormal() { nr_dimensions_ = 6; }
+  void copyToFloatArray(const pcl::PointNormal& point, float* out) const override
+  {
+    std::copy_n(point.data, 3, out);
+    std::copy_n(point.data_n, 3, out + 3);
+  }
+};
+
+TEST(RegistrationReplacedParts, ARepresentationSeesTurnedNormals)
+{
+  const ObjectPair pair;
+  const auto target = withNormals<pcl::PointNormal>(pair.target);
+  const auto source = pcl::make_shared<pcl::PointCloud<pcl::PointNormal>>();
+  const Eigen::Matrix4f quarter =
+      motionThere(SE3(expSO3(0.5 * kPi * Eigen::Vector3d::UnitZ()), Eigen::Vector3d::Zero())).matrix<float>();
+  pcl::transformPointCloudWithNormals(*target, *source, Eigen::Matrix4f(quarter.inverse()));
+  EdgePlaneRegistration<pcl::PointNormal, pcl::PointNormal> registration;
+  registration.setPointRepresentation(pcl::make_shared<const WithNormal>());
+  registration.setInputSource(source);
+  registration.setInputTarget(target);
+  registration.setMaximumIterations(1);  // else thinned clouds would do the work
+  pcl::PointCloud<pcl::PointNormal> output;
+  registration.align(output, quarter);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_LT(disagreement(*pair.target, registration.getFinalTransformation() * quarter.inverse(),
+                         Eigen::Matrix4f::Identity()),
+            1e-4);
 }
 
 /// Counts that it is called.

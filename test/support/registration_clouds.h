@@ -8,10 +8,26 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <cstdlib>
+
 namespace pcl_floam::test {
 
 using Point = pcl::PointXYZI;
 using Cloud = pcl::PointCloud<Point>;
+
+/// How far the objects' places are moved off: each test runs once near the origin and once many objects' sizes from it.
+inline Eigen::Vector3d farOff()
+{
+  return std::getenv("PCL_FLOAM_TEST_FAR_OFF") != nullptr ? Eigen::Vector3d(40.0, -25.0, 10.0)
+                                                          : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+/// A motion of the objects, wherever they are.
+inline SE3 motionThere(const SE3& motion, double scale = 1.0)
+{
+  const SE3 there(Eigen::Matrix3d::Identity(), scale * farOff());
+  return there * motion * there.inverse();
+}
 
 /// A scan of the room from a place, in firing order, without rings; the intensity is the point's number.
 inline Cloud::Ptr scanFrom(const SE3& world_T_sensor)
@@ -43,7 +59,7 @@ inline Cloud::Ptr sampledObject(unsigned seed, double scale, int points = 6000)
       default: p = {0.1 + 0.3 * u, 0.6 * u + 0.1, 0.6 + 0.4 * v}; break;
     }
     Point point;
-    point.getVector3fMap() = (scale * (p + Eigen::Vector3d(2.0, 1.0, 0.5))).cast<float>();
+    point.getVector3fMap() = (scale * (p + Eigen::Vector3d(2.0, 1.0, 0.5) + farOff())).cast<float>();
     cloud->push_back(point);
   }
   return cloud;
@@ -51,7 +67,8 @@ inline Cloud::Ptr sampledObject(unsigned seed, double scale, int points = 6000)
 
 inline Eigen::Matrix4f motion(double scale)
 {
-  return exp((Vector6() << 0.06 * scale, -0.04 * scale, 0.03 * scale, 0.03, -0.02, 0.04).finished()).matrix<float>();
+  const Vector6 twist = (Vector6() << 0.06 * scale, -0.04 * scale, 0.03 * scale, 0.03, -0.02, 0.04).finished();
+  return motionThere(exp(twist), scale).matrix<float>();
 }
 
 /// Root mean square distance between a cloud moved by two transforms.

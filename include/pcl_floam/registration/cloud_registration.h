@@ -77,9 +77,9 @@ struct CloudRegistrationRun {
   std::function<void(const SE3& target_T_source, std::vector<PointMatch>& matches)> reject;
   /// Called after each iteration; true ends the registration, which has then converged.
   std::function<bool(const CloudIteration&)> iterated;
-  /// A search to use in place of the target's own on the full cloud: the number of the target's point that belongs to
-  /// a source point (by number, and where it is now), or -1.
-  std::function<int(int source, const Eigen::Vector3d& position)> search;
+  /// A search to use in place of the target's own on the full cloud: for each of the source's points named, moved by
+  /// \p target_T_source, the number of the target's point that belongs to it, or -1.
+  std::function<std::vector<int>(const std::vector<int>& source, const SE3& target_T_source)> search;
 };
 
 /// Registers two clouds: nearest points, each pair weighed by the shapes around both (line, plane or point), with a

@@ -153,7 +153,7 @@ private:
   // What ICP's settings ask for in each iteration.
   void reject(const SE3& target_T_source, std::vector<PointMatch>& matches);
   bool iterated(const CloudIteration& iteration);
-  [[nodiscard]] int searchTarget(int source, const Eigen::Vector3d& position) const;
+  [[nodiscard]] std::vector<int> searchTarget(const std::vector<int>& source, const SE3& target_T_source);
   void showIteration(const SE3& target_T_source, const std::vector<PointMatch>* matches);
   [[nodiscard]] PointCloudSource movedSource(const SE3& target_T_source);
 

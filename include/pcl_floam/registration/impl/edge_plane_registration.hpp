@@ -133,7 +133,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     run.reject = [this](const SE3& pose, std::vector<PointMatch>& matches) { reject(pose, matches); };
   }
   if (hasSearchOfItsOwn()) {
-    run.search = [this](int point, const Eigen::Vector3d& position) { return searchTarget(point, position); };
+    run.search = [this](const std::vector<int>& points, const SE3& pose) { return searchTarget(points, pose); };
   }
   run.iterated = [this](const CloudIteration& iteration) { return iterated(iteration); };
   return registerClouds(source, target, run);

@@ -172,19 +172,25 @@ bool EdgePlaneRegistration<PointSource, PointTarget, Scalar>::iterated(const Clo
   return this->convergence_criteria_->hasConverged();
 }
 
+/// Asks the user's search for whole points: it may look at more of them than their place.
 template <typename PointSource, typename PointTarget, typename Scalar>
-int EdgePlaneRegistration<PointSource, PointTarget, Scalar>::searchTarget(int source,
-                                                                          const Eigen::Vector3d& position) const
+std::vector<int> EdgePlaneRegistration<PointSource, PointTarget, Scalar>::searchTarget(const std::vector<int>& source,
+                                                                                       const SE3& target_T_source)
 {
-  PointTarget query;
-  pcl::copyPoint((*this->input_)[static_cast<std::size_t>(source)], query);
-  query.getVector3fMap() = position.template cast<float>();
+  const PointCloudSource moved = movedSource(target_T_source);
+  const auto representation = this->tree_->getPointRepresentation();
+  std::vector<int> nearest(source.size(), -1);
   pcl::Indices found(1);
   std::vector<float> squared_distance(1);
-  if (!pcl::isXYZFinite(query) || this->tree_->nearestKSearch(query, 1, found, squared_distance) < 1) {
-    return -1;
+  for (std::size_t i = 0; i < source.size(); ++i) {
+    PointTarget query;
+    pcl::copyPoint(moved[static_cast<std::size_t>(source[i])], query);
+    const bool valid = pcl::isXYZFinite(query) && (!representation || representation->isValid(query));
+    if (valid && this->tree_->nearestKSearch(query, 1, found, squared_distance) > 0) {
+      nearest[i] = static_cast<int>(found[0]);
+    }
   }
-  return static_cast<int>(found[0]);
+  return nearest;
 }
 
 }  // namespace pcl_floam
