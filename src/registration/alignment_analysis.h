@@ -10,11 +10,18 @@
 
 namespace pcl_floam {
 
+/// Perturbations about a cloud's centroid that are free: one a column.
+using FreeMotions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+/// Those of the degrees of freedom of the cloud's frame that are not locked.
+/// \param arm from the frame's origin to the centroid, in the target's axes
+[[nodiscard]] FreeMotions freeMotions(const DegreesOfFreedom& locked, const Eigen::Vector3d& arm);
+
 /// Eigen-analysis of H in metres: rotations are scaled by the cloud's extent.
 class AlignmentAnalysis {
 public:
   /// \param extent root mean square distance of the source's points from their centroid, m
-  AlignmentAnalysis(const AlignmentSums& sums, double extent);
+  AlignmentAnalysis(const AlignmentSums& sums, double extent, const FreeMotions& free);
 
   /// The damped Gauss-Newton step, about the centroid; zero along directions without any information.
   [[nodiscard]] Vector6 step() const;
@@ -28,11 +35,14 @@ public:
 private:
   using Matrix = Eigen::Matrix<double, 6, 6>;
   using Vector = Eigen::Matrix<double, 6, 1>;
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+
+  [[nodiscard]] double largest() const;
 
   const AlignmentSums& sums_;
-  Vector scale_;         ///< from scaled unknowns (all in m) to (m, rad)
-  Vector eigenvalues_;   ///< of the scaled H over the sum of the weights
-  Matrix eigenvectors_;  ///< columns, of the scaled H
+  Vector scale_;              ///< from scaled unknowns (all in m) to (m, rad)
+  Values eigenvalues_;        ///< of the scaled H over the sum of the weights, within the free motions
+  FreeMotions eigenvectors_;  ///< columns, of the same
 };
 
 }  // namespace pcl_floam

@@ -10,6 +10,12 @@ namespace pcl_floam {
 
 namespace {
 
+/// Voxels of the first thinned level, in spacings; each further level has voxels twice as large.
+constexpr double kFirstVoxel = 2.5;
+
+/// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
+constexpr std::size_t kCoarsestPoints = 1500;
+
 /// Voxels of a thinned cloud, in extents.
 constexpr double kRoughVoxel = 0.03;
 
@@ -120,20 +126,43 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
 
 }  // namespace
 
-CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 {
-  const Points points = takePoints(cloud, selectable);
-  levels_.push_back(makeLevel(points.position, points.number, threads));
+  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
+  CloudLevel level = makeLevel(means, numbers, threads);
+  level.voxel = voxel;
+  return level;
 }
 
-CloudPyramid CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+    : CloudPyramid(threads)
 {
-  CloudPyramid pyramid;
-  const Points points = pyramid.takePoints(cloud, selectable);
-  const double voxel_size = std::max(kRoughVoxel * pyramid.extent_, std::numeric_limits<double>::min());
+  const Points points = takePoints(cloud, selectable);
+  full_ = makeLevel(points.position, points.number, threads);
+}
+
+std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                                    int threads)
+{
+  std::unique_ptr<CloudPyramid> pyramid(new CloudPyramid(threads));
+  const Points points = pyramid->takePoints(cloud, selectable);
+  const double voxel_size = std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min());
   const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
-  pyramid.levels_.push_back(makeLevel(means, numbers, threads));
+  pyramid->full_ = makeLevel(means, numbers, threads);
   return pyramid;
+}
+
+const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const
+{
+  std::call_once(thinned_once_, [this] {
+    double voxel = kFirstVoxel * full_.spacing;
+    for (const CloudLevel* last = &full_; voxel > 0.0 && last->tree.size() > kCoarsestPoints; voxel *= 2.0) {
+      CloudLevel next = thinnedLevel(*last, voxel, threads_);
+      thinned_.push_back(std::move(next));
+      last = &thinned_.back();
+    }
+  });
+  return thinned_;
 }
 
 CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
@@ -158,13 +187,6 @@ CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std:
   }
   extent_ = std::sqrt(squares / count);
   return points;
-}
-
-void CloudPyramid::addLevel(double voxel_size, int threads)
-{
-  const CloudLevel& finer = levels_.back();
-  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel_size);
-  levels_.push_back(makeLevel(means, numbers, threads));
 }
 
 }  // namespace pcl_floam

@@ -10,7 +10,8 @@
 #include <Eigen/Core>
 
 #include <cstdint>
-#include <deque>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace pcl_floam {
@@ -21,7 +22,11 @@ struct CloudLevel {
   std::vector<int> number;         ///< in the tree's order: the cloud's point that is this one, or nearest to the mean
   std::vector<LocalShape> shapes;  ///< in the tree's order
   double spacing = 0.0;            ///< typical distance of neighbours, m
+  double voxel = 0.0;              ///< m; size of the voxels whose means the points are
 };
+
+/// The means of a level's points within voxels of the given size, m.
+[[nodiscard]] CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads);
 
 /// A cloud's finite points about their centroid, so that neither single precision nor the equations suffer far from
 /// the origin; and thinned versions of it.
@@ -31,10 +36,10 @@ public:
   CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
 
   /// A pyramid whose level 0 is thinned already, for clouds of which only a rough picture is needed.
-  [[nodiscard]] static CloudPyramid thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
-                                            int threads);
+  [[nodiscard]] static std::unique_ptr<CloudPyramid> thinned(const CloudView& cloud,
+                                                             const std::vector<std::uint8_t>& selectable, int threads);
 
-  [[nodiscard]] bool empty() const { return levels_[0].tree.empty(); }
+  [[nodiscard]] bool empty() const { return full_.tree.empty(); }
 
   /// The centroid, in the cloud's frame.
   [[nodiscard]] const Eigen::Vector3d& origin() const { return origin_; }
@@ -42,12 +47,11 @@ public:
   /// Root mean square distance of the points from the centroid, m.
   [[nodiscard]] double extent() const { return extent_; }
 
-  /// Level 0 holds all points, each further one fewer.
-  [[nodiscard]] const CloudLevel& level(std::size_t number) const { return levels_[number]; }
-  [[nodiscard]] std::size_t levels() const { return levels_.size(); }
+  [[nodiscard]] const CloudLevel& full() const { return full_; }
 
-  /// Adds the level of the means within voxels of the given size, m, made from the last level.
-  void addLevel(double voxel_size, int threads);
+  /// Ever fewer points, in voxels twice as large from level to level: made when they are first asked for, by any
+  /// thread, from nothing but this cloud.
+  [[nodiscard]] const std::vector<CloudLevel>& thinnedLevels() const;
 
 private:
   struct Points {
@@ -55,10 +59,13 @@ private:
     std::vector<int> number;                ///< in the cloud
   };
 
-  CloudPyramid() = default;
+  explicit CloudPyramid(int threads) : threads_(threads) {}
   Points takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
 
-  std::deque<CloudLevel> levels_;  ///< a deque: references to levels stay valid when one is added
+  CloudLevel full_;
+  mutable std::once_flag thinned_once_;
+  mutable std::vector<CloudLevel> thinned_;
+  int threads_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();
   double extent_ = 0.0;
 };

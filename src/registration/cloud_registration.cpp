@@ -13,14 +13,11 @@ namespace pcl_floam {
 
 namespace {
 
-/// Voxels of the first thinned level, in spacings of the target; each further level has voxels twice as large.
-constexpr double kFirstVoxel = 2.5;
-
 /// No thinned level has fewer points than this.
 constexpr std::size_t kFewestPoints = 250;
 
-/// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
-constexpr std::size_t kCoarsestPoints = 1500;
+/// Full clouds of more points are too much for the many iterations that thinned ones get.
+constexpr std::size_t kMostPoints = 1500;
 
 /// Converged when a step moves no typical point by more than this, in spacings.
 constexpr double kEpsilon = 5e-4;
@@ -47,7 +44,7 @@ constexpr int kFewestForCoarse = 4;
 
 class Registration {
 public:
-  Registration(CloudPyramid& source, CloudPyramid& target, const CloudRegistrationRun& run)
+  Registration(const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run)
       : source_(source),
         target_(target),
         run_(run),
@@ -61,7 +58,7 @@ public:
   RegistrationReport run()
   {
     if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
-      const StartChoice choice(source_.level(0), target_.level(0), run_.max_distance, run_.threads);
+      const StartChoice choice(source_.full(), target_.full(), run_.max_distance, run_.threads);
       if (!choice.isClose(pose_)) {
         const SE3 guess = pose_;
         alignThinned();
@@ -69,20 +66,20 @@ public:
       }
     }
     report_.termination = Termination::iteration_limit;
-    LevelAlignment alignment(source_.level(0), target_.level(0), run_, true, along());
+    LevelAlignment alignment(source_.full(), target_.full(), run_, true, along());
     align(alignment, run_.max_iterations, finestEpsilon(alignment.spacing()), true);
     return finish();
   }
 
   SE3 runRoughly()
   {
-    const StartChoice choice(source_.level(0), target_.level(0), run_.max_distance, run_.threads);
+    const StartChoice choice(source_.full(), target_.full(), run_.max_distance, run_.threads);
     const SE3 guess = pose_;
     if (choice.isClose(guess)) {
       return run_.guess;
     }
     alignThinned();
-    LevelAlignment alignment(source_.level(0), target_.level(0), run_, false, kAlongFalls);
+    LevelAlignment alignment(source_.full(), target_.full(), run_, false, kAlongFalls);
     align(alignment, kCoarseIterations, kCoarseEpsilon * alignment.spacing(), false);
     return toFrames(choice.better(pose_, guess));
   }
@@ -92,7 +89,7 @@ private:
 
   [[nodiscard]] double along() const
   {
-    return std::min(source_.level(0).tree.size(), target_.level(0).tree.size()) < kFewPoints ? kAlongOfFew : kAlong;
+    return std::min(source_.full().tree.size(), target_.full().tree.size()) < kFewPoints ? kAlongOfFew : kAlong;
   }
 
   /// The user's threshold if it is the finer one, as far as single precision goes.
@@ -105,29 +102,34 @@ private:
   /// Registers ever less thinned clouds; whatever fails there leaves the pose as it was.
   void alignThinned()
   {
-    double voxel = kFirstVoxel * std::max(target_.level(0).spacing, source_.level(0).spacing);
-    for (std::size_t level = 1; voxel > 0.0 && target_.level(level - 1).tree.size() > kCoarsestPoints; ++level) {
-      if (target_.levels() <= level) {
-        target_.addLevel(voxel, run_.threads);
-      }
-      source_.addLevel(voxel, run_.threads);
-      voxel *= 2.0;
+    const std::vector<CloudLevel>& targets = target_.thinnedLevels();
+    std::vector<CloudLevel> sources;  // in the target's voxels
+    for (const CloudLevel& target : targets) {
+      CloudLevel next = thinnedLevel(sources.empty() ? source_.full() : sources.back(), target.voxel, run_.threads);
+      sources.push_back(std::move(next));
     }
     double along = 1.0;
-    for (std::size_t level = std::min(source_.levels(), target_.levels()); level-- > 0;) {
-      const CloudLevel& source = source_.level(level);
-      const CloudLevel& target = target_.level(level);
-      const bool too_thin = level > 0 && std::min(source.tree.size(), target.tree.size()) < kFewestPoints;
-      const bool too_large = level == 0 && std::max(source.tree.size(), target.tree.size()) > kCoarsestPoints;
-      if (too_thin || too_large || 2.0 * target.spacing > run_.max_distance) {
-        continue;
+    for (std::size_t level = targets.size(); level-- > 0;) {
+      if (std::min(sources[level].tree.size(), targets[level].tree.size()) >= kFewestPoints) {
+        alignThinned(sources[level], targets[level], along);
       }
-      if (along == 1.0) {
-        alignThinned(LevelAlignment(source, target, run_, false, along, false));
-      }
-      alignThinned(LevelAlignment(source, target, run_, false, along));
-      along = std::max(kAlong, kAlongFalls * along);
     }
+    if (std::max(source_.full().tree.size(), target_.full().tree.size()) <= kMostPoints) {
+      alignThinned(source_.full(), target_.full(), along);
+    }
+  }
+
+  /// \param along becomes what it is on the next level
+  void alignThinned(const CloudLevel& source, const CloudLevel& target, double& along)
+  {
+    if (2.0 * target.spacing > run_.max_distance) {
+      return;
+    }
+    if (along == 1.0) {
+      alignThinned(LevelAlignment(source, target, run_, false, along, false));
+    }
+    alignThinned(LevelAlignment(source, target, run_, false, along));
+    along = std::max(kAlong, kAlongFalls * along);
   }
 
   void alignThinned(LevelAlignment alignment)
@@ -146,7 +148,7 @@ private:
         report_.termination = finest ? Termination::too_few_correspondences : Termination::not_run;
         return;
       }
-      const Vector6 step = AlignmentAnalysis(sums_, source_.extent()).step();
+      const Vector6 step = analysis().step();
       if (!step.allFinite()) {
         report_.termination = Termination::degenerate;
         return;
@@ -165,6 +167,7 @@ private:
     const SE3 before = toFrames(pose_);
     pose_.rotation = nearestRotation(expSO3(step.tail<3>()) * pose_.rotation);
     pose_.translation += step.head<3>();
+    lockTranslation();
     if (!run_.iterated || !finest) {
       return false;
     }
@@ -173,6 +176,24 @@ private:
     iteration.step = iteration.target_T_source * before.inverse();
     iteration.matches = &alignment.matches();
     return run_.iterated(iteration);
+  }
+
+  [[nodiscard]] Eigen::Vector3d arm() const { return pose_.rotation * source_.origin(); }
+
+  [[nodiscard]] AlignmentAnalysis analysis() const
+  {
+    return {sums_, source_.extent(), freeMotions(run_.locked, arm())};
+  }
+
+  /// Takes out what a turn about the centroid, which is straight to first order, has added.
+  void lockTranslation()
+  {
+    const SE3 pose = toFrames(pose_);
+    for (int i = 0; i < 3; ++i) {
+      if (run_.locked[static_cast<std::size_t>(i)]) {
+        pose_.translation[i] += run_.guess.translation[i] - pose.translation[i];
+      }
+    }
   }
 
   RegistrationReport finish()
@@ -190,12 +211,18 @@ private:
       return report_;
     }
     report_.target_T_source = result;
-    AlignmentAnalysis(sums_, source_.extent()).describe(pose_.rotation * source_.origin(), kWeak * along(), report_);
+    analysis().describe(arm(), kWeak * along(), report_);
+    for (int i = 0; i < 6; ++i) {
+      if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
+        report_.covariance.row(i).setZero();
+        report_.covariance.col(i).setZero();
+      }
+    }
     return report_;
   }
 
-  CloudPyramid& source_;
-  CloudPyramid& target_;
+  const CloudPyramid& source_;
+  const CloudPyramid& target_;
   const CloudRegistrationRun& run_;
   SE3 source_T_origin_;
   SE3 target_T_origin_;
@@ -213,7 +240,7 @@ PreparedCloud::PreparedCloud(const CloudView& cloud, const std::vector<std::uint
 
 PreparedCloud PreparedCloud::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
 {
-  return PreparedCloud(std::make_unique<CloudPyramid>(CloudPyramid::thinned(cloud, selectable, threads)));
+  return PreparedCloud(CloudPyramid::thinned(cloud, selectable, threads));
 }
 
 PreparedCloud::PreparedCloud(std::unique_ptr<CloudPyramid> pyramid) : pyramid_(std::move(pyramid)) {}
@@ -229,7 +256,7 @@ bool PreparedCloud::empty() const
 
 double PreparedCloud::spacing() const
 {
-  return pyramid_->level(0).spacing;
+  return pyramid_->full().spacing;
 }
 
 RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
+#include <vector>
 
 namespace pcl_floam::test {
 namespace {
@@ -164,6 +166,30 @@ TEST(CloudRegistration, AnyNumberOfThreadsGivesTheSameBits)
     const Result result = align(source, target, guess, threads);
     EXPECT_EQ(result.transform, expected.transform);
     EXPECT_EQ(result.report.covariance, expected.report.covariance);
+  }
+}
+
+TEST(CloudRegistration, OnePreparedTargetServesSeveralThreads)
+{
+  const auto target = sampledObject(1, 1.0, 20000);
+  const PreparedCloud prepared(viewOf(*target), {}, 1);
+  CloudRegistrationRun run;
+  run.guess = SE3(Eigen::Affine3d(turned(20.0, {0.0, 0.0, 1.0}, {0.1, 0.0, 0.0})));
+  const auto align = [&run](const PreparedCloud& to, int points) {
+    const auto source = sampledObject(2, 1.0, points);
+    return registerClouds(PreparedCloud(viewOf(*source), {}, 1), to, run).target_T_source.matrix();
+  };
+  const std::vector<int> sizes = {20000, 3000, 9000};
+  std::vector<Eigen::Matrix4d> results(sizes.size());
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    threads.emplace_back([&, i] { results[i] = align(prepared, sizes[i]); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    EXPECT_EQ(results[i], align(PreparedCloud(viewOf(*target), {}, 1), sizes[i])) << sizes[i];
   }
 }
 

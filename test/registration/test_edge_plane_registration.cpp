@@ -129,6 +129,40 @@ TEST(EdgePlaneRegistration, RegistersFeaturesWithAMap)
   EXPECT_EQ(registration.report().termination, Termination::converged);
 }
 
+TEST(EdgePlaneRegistration, AnotherMapOrNoneReplacesTheOneBefore)
+{
+  const auto mapOf = [](const SE3& world_T_sensor) {
+    auto map = pcl::make_shared<KeyframeVoxelMap>();
+    map->insert(featuresOf(toCloud(sweepRoom(Room(), Lidar(), world_T_sensor))), SE3());
+    return map;
+  };
+  Registration registration;
+  registration.setInputSource(scanFrom(kOther));
+  registration.setInputTargetMap(mapOf(SE3()));
+  Cloud output;
+  registration.align(output);
+  EXPECT_LT(registration.getFitnessScore(), 0.3);
+  auto far = pcl::make_shared<KeyframeVoxelMap>();
+  far->insert(featuresOf(toCloud(sweepRoom(Room(), Lidar()))), SE3(Eigen::Matrix3d::Identity(), {100.0, 0.0, 0.0}));
+  registration.setInputTargetMap(far);
+  registration.align(output);
+  EXPECT_GT(registration.getFitnessScore(), 1000.0);
+  registration.setInputTargetMap(mapOf(SE3()));
+  registration.align(output);
+  ASSERT_TRUE(registration.hasConverged());
+  registration.setInputTargetMap(nullptr);
+  EXPECT_EQ(registration.getInputTarget(), nullptr);
+  registration.align(output);
+  EXPECT_FALSE(registration.hasConverged());
+  EXPECT_EQ(registration.report().termination, Termination::not_run);
+
+  const auto cloud = scanFrom(SE3());
+  registration.setInputTarget(cloud);
+  registration.setInputTargetMap(far);
+  registration.setInputTargetMap(nullptr);
+  EXPECT_EQ(registration.getInputTarget(), cloud);
+}
+
 TEST(EdgePlaneRegistration, PointTypesOfSourceAndTargetMayBeXyz)
 {
   const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 namespace pcl_floam::test {
 namespace {
 
@@ -151,6 +153,51 @@ TEST(RegistrationContract, ATargetChangedInPlaceAndSetAgainIsNew)
   registration.setInputTarget(target);
   registration.align(output);
   EXPECT_LT(disagreement(*source, registration.getFinalTransformation(), motion(1.0)), 0.005);
+}
+
+TEST(RegistrationContract, NewInputForgetsTheLastResult)
+{
+  const auto source = sampledObject(2, 1.0);
+  Registration registration;
+  Cloud output;
+  const auto setSource = [&] { registration.setInputSource(source); };
+  const auto setTarget = [&] { registration.setInputTarget(sampledObject(1, 1.0)); };
+  setSource();
+  setTarget();
+  for (const std::function<void()>& renew : {std::function<void()>(setSource), std::function<void()>(setTarget)}) {
+    registration.align(output);
+    ASSERT_TRUE(registration.hasConverged());
+    ASSERT_TRUE(registration.report().hasConverged());
+    renew();
+    EXPECT_FALSE(registration.hasConverged());
+    EXPECT_EQ(registration.report().termination, Termination::not_run);
+  }
+}
+
+TEST(RegistrationContract, AnEarlierSourceLeavesNoTrace)
+{
+  // Denser and sparser sources ask for other thinned targets.
+  const auto target = sampledObject(1, 1.0, 20000);
+  const Eigen::Matrix4f away =
+      motionThere(exp((Vector6() << 0.2, -0.1, 0.1, 0.2, 0.1, 0.3).finished())).matrix<float>();
+  const auto source = [&](int points) {
+    auto cloud = pcl::make_shared<Cloud>();
+    pcl::transformPointCloud(*sampledObject(2, 1.0, points), *cloud, away);
+    return cloud;
+  };
+  const auto align = [](Registration& registration, const Cloud::Ptr& cloud) {
+    Cloud output;
+    registration.setInputSource(cloud);
+    registration.align(output);
+    return registration.getFinalTransformation();
+  };
+  Registration fresh;
+  fresh.setInputTarget(target);
+  const Eigen::Matrix4f expected = align(fresh, source(20000));
+  Registration used;
+  used.setInputTarget(target);
+  align(used, source(3000));
+  EXPECT_EQ(align(used, source(20000)), expected);
 }
 
 TEST(RegistrationContract, FitnessScoreSurvivesWhatIsNotFinite)

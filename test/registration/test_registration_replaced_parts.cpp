@@ -235,5 +235,49 @@ TEST(RegistrationReplacedParts, AGuessThatScalesIsCarriedAlong)
   EXPECT_NEAR(linear.determinant(), 1.331F, 1e-3F);
 }
 
+TEST(RegistrationReplacedParts, AGuessThatIsAlmostRigidIsRegisteredByShapes)
+{
+  // A turn of 25 degrees by its sine and cosine, whose cosine is wrong in the third digit.
+  ObjectPair setup;
+  SE3 turn(expSO3(25.0 / 180.0 * kPi * Eigen::Vector3d::UnitZ()), Eigen::Vector3d::Zero());
+  turn.rotation(0, 0) = turn.rotation(1, 1) = 0.904;
+  const SE3 object(Eigen::Matrix3d::Identity(), Eigen::Vector3d(2.0, 1.0, 0.5) + farOff());
+  const Eigen::Matrix4f guess = (object * turn * object.inverse()).matrix<float>();
+  setup.registration.align(setup.output, guess);
+  ASSERT_TRUE(setup.registration.hasConverged());
+  EXPECT_LT(disagreement(*setup.source, setup.registration.getFinalTransformation(), motion(1.0)), 0.005);
+  EXPECT_GT(setup.registration.report().plane_correspondences, 1000);
+}
+
+/// The tree within PCL's search is protected: an explicit instantiation may name it all the same.
+template <auto Tree>
+struct Inside {
+  friend bool hasTree(pcl::search::KdTree<Point>& search) { return (search.*Tree)->getInputCloud() != nullptr; }
+};
+bool hasTree(pcl::search::KdTree<Point>& search);
+template struct Inside<&pcl::search::KdTree<Point>::tree_>;
+
+TEST(RegistrationReplacedParts, TheTargetsTreeIsMadeWhenItIsAsked)
+{
+  ObjectPair setup;
+  EXPECT_LT(setup.align(), 0.005);
+  const auto search = setup.registration.getSearchMethodTarget();
+  EXPECT_FALSE(hasTree(*search));
+  EXPECT_EQ(search->getInputCloud(), setup.target);
+  const double score = setup.registration.getFitnessScore();
+  EXPECT_LT(score, 0.01);
+  EXPECT_TRUE(hasTree(*search));
+  const auto elsewhere = pcl::make_shared<Cloud>(*setup.target);
+  for (Point& point : *elsewhere) {
+    point.x += 10.0F;
+  }
+  setup.registration.setInputTarget(elsewhere);
+  EXPECT_FALSE(hasTree(*search));
+  EXPECT_GT(setup.registration.getFitnessScore(), 10.0);
+  setup.registration.setInputTarget(elsewhere);
+  search->setInputCloud(setup.target);  // the user's last word
+  EXPECT_NEAR(setup.registration.getFitnessScore(), score, 0.5 * score);
+}
+
 }  // namespace
 }  // namespace pcl_floam::test

@@ -204,6 +204,53 @@ TEST(RegistrationSettings, TheMaximumDistanceHolds)
   }
 }
 
+TEST(RegistrationSettings, LockedDegreesOfFreedomKeepTheGuess)
+{
+  const Eigen::Matrix4f guess =
+      motionThere(exp((Vector6() << 0.01, 0.01, 0.02, 0.01, 0.01, 0.0).finished())).matrix<float>();
+  ObjectPair setup;
+  RegistrationParameters parameters;
+  parameters.locked = kPlanarMotion;
+  setup.registration.setParameters(parameters);
+  setup.registration.align(setup.output, guess);
+  ASSERT_TRUE(setup.registration.hasConverged());
+  const Eigen::Matrix4f planar = setup.registration.getFinalTransformation();
+  EXPECT_NEAR(planar(2, 3), guess(2, 3), 1e-5F);
+  EXPECT_LT((planar.block<1, 3>(2, 0) - guess.block<1, 3>(2, 0)).norm(), 1e-6F);
+  EXPECT_GT((planar - guess).norm(), 0.01F);
+  const Matrix6 covariance = setup.registration.report().covariance;
+  for (const int i : {2, 3, 4}) {
+    EXPECT_EQ(covariance.row(i).norm(), 0.0);
+  }
+  EXPECT_GT(covariance(0, 0), 0.0);
+
+  parameters.locked = {true, true, true, false, false, false};
+  setup.registration.setParameters(parameters);
+  setup.registration.align(setup.output, guess);
+  ASSERT_TRUE(setup.registration.hasConverged());
+  const Eigen::Matrix4f change = setup.registration.getFinalTransformation() - guess;
+  EXPECT_LT(change.col(3).norm(), 1e-5F);
+  EXPECT_GT(change.leftCols<3>().norm(), 1e-3F);
+
+  parameters.locked.fill(true);
+  setup.registration.setParameters(parameters);
+  setup.registration.align(setup.output, guess);
+  EXPECT_LT((setup.registration.getFinalTransformation() - guess).norm(), 1e-5F);
+}
+
+TEST(RegistrationSettings, TheNumberOfIterationsSetByIcpsSetterStays)
+{
+  ObjectPair setup;
+  RegistrationParameters parameters;
+  parameters.max_iterations = 20;
+  setup.registration.setParameters(parameters);
+  EXPECT_EQ(setup.registration.getMaximumIterations(), 20);
+  setup.registration.setMaximumIterations(1);
+  setup.registration.setParameters(parameters);
+  setup.align();
+  EXPECT_EQ(setup.registration.report().iterations, 1);
+}
+
 TEST(RegistrationSettings, TheLastIncrementIsTheLastStep)
 {
   ObjectPair setup;

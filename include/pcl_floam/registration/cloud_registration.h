@@ -19,7 +19,8 @@ namespace pcl_floam {
 class CloudPyramid;
 
 /// A cloud made ready for registration: points about their centroid, a search tree, the shape around each point, and
-/// thinned versions of all that, made when they are first needed.
+/// thinned versions of all that, made when they are first needed. It does not depend on what it was registered with,
+/// and may be registered in several threads at a time.
 class PreparedCloud {
 public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
@@ -37,7 +38,7 @@ public:
   /// Typical distance of neighbouring points, m; 0 if all points are equal.
   [[nodiscard]] double spacing() const;
 
-  [[nodiscard]] CloudPyramid& pyramid() const { return *pyramid_; }
+  [[nodiscard]] const CloudPyramid& pyramid() const { return *pyramid_; }
 
 private:
   explicit PreparedCloud(std::unique_ptr<CloudPyramid> pyramid);
@@ -72,6 +73,7 @@ struct CloudRegistrationRun {
   int min_correspondences = 3;
   bool reciprocal = false;  ///< only matches that are each other's nearest
   RobustKernel kernel = RobustKernel::cauchy;
+  DegreesOfFreedom locked = {};  ///< these keep the guess's value: translations exactly, see RegistrationParameters
   bool wants_matches = false;
   /// Takes away from the matches of each iteration what it does not want; source points are at \p target_T_source.
   std::function<void(const SE3& target_T_source, std::vector<PointMatch>& matches)> reject;

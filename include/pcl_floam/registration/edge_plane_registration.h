@@ -54,7 +54,8 @@ namespace pcl_floam {
 ///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
 ///   source's search object, reciprocal matches make no use: they come from a tree of the library's own.
 /// - A transformation estimation or correspondence estimation set by the user takes over: ICP's own loop then runs
-///   with it, and so it does for a guess that is no rigid motion.
+///   with it.
+/// - A guess that is no rigid motion is carried along, as in ICP: the source is registered as the guess bends it.
 /// - `setRANSACIterations`, `setRANSACOutlierRejectionThreshold`: without effect, as in ICP itself.
 ///
 /// Rejectors, reciprocal matches, the Euclidean fitness epsilon and a search object of the user's speak of points: with
@@ -82,6 +83,8 @@ public:
 
   EdgePlaneRegistration();
 
+  /// Where all points are registered, `kernel` and `locked` count; the others are about features. What
+  /// `setMaximumIterations` has set stays as it is.
   /// \throws std::invalid_argument if a parameter is out of its range.
   void setParameters(const RegistrationParameters& parameters);
   [[nodiscard]] const RegistrationParameters& getParameters() const { return parameters_; }
@@ -96,11 +99,11 @@ public:
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 
   /// Features to register in place of those of the source cloud (which is still the one that align() transforms).
-  void setSourceFeatures(const FeatureSet& features) { source_features_ = features; }
-  void clearSourceFeatures() { source_features_.reset(); }
+  void setSourceFeatures(const FeatureSet& features);
+  void clearSourceFeatures();
 
   /// A map to register against in place of the target cloud; null to go back to that. The base class still needs a
-  /// target cloud for align() and getFitnessScore(): the map's plane layer is set as such if none is.
+  /// target cloud for align() and getFitnessScore(): while none is set, the map's plane layer stands in for it.
   void setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map);
   [[nodiscard]] KeyframeVoxelMap::ConstPtr getInputTargetMap() const { return target_map_; }
 
@@ -132,6 +135,7 @@ private:
     std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
   };
 
+  void forgetResult();
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
   [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
@@ -146,6 +150,7 @@ private:
   [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
   [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess, int max_iterations, bool coarse_first);
   [[nodiscard]] RegistrationReport finishByPoints(const RegistrationReport& by_features);
+  void takeSource(const Matrix4& stretch);
   void runBaseLoop(PointCloudSource& output, const Matrix4& guess);
   void setUpCriteria();
   void concludeCriteria();
@@ -162,6 +167,8 @@ private:
   SensorModel sensor_;
   std::optional<FeatureSet> source_features_;
   KeyframeVoxelMap::ConstPtr target_map_;
+  PointCloudTargetConstPtr map_cloud_;   ///< the target while it stands in for a map
+  PointCloudSourceConstPtr registered_;  ///< the source as the guess bends it, while align() runs
   std::shared_ptr<Target> prepared_target_;
   RegistrationReport report_;
   int threads_ = 1;

@@ -6,6 +6,8 @@
 #include <pcl/search/kdtree.h>
 
 #include <limits>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 namespace pcl_floam {
@@ -22,8 +24,21 @@ public:
   using Base::nearestKSearch;
   using Base::radiusSearch;
 
+  /// Takes a cloud, but makes the tree of it only if it is asked.
+  void setInputCloudLater(const typename Base::PointCloudConstPtr& cloud)
+  {
+    const auto last = this->tree_;
+    this->tree_.reset(new pcl::KdTreeFLANN<PointT>(this->sorted_results_));
+    this->tree_->setEpsilon(last->getEpsilon());
+    this->tree_->setPointRepresentation(last->getPointRepresentation());
+    this->input_ = cloud;
+    this->indices_.reset();
+    made_ = std::make_shared<std::once_flag>();
+  }
+
   int nearestKSearch(const PointT& point, int k, pcl::Indices& indices, std::vector<float>& distances) const override
   {
+    makeTree();
     const int found = pcl::isXYZFinite(point) ? Base::nearestKSearch(point, k, indices, distances) : 0;
     if (found == 0) {
       indices.clear();
@@ -40,8 +55,24 @@ public:
       distances.clear();
       return 0;
     }
+    makeTree();
     return Base::radiusSearch(point, radius, indices, distances, max_nn);
   }
+
+private:
+  /// Asking is const, and may be done from several threads.
+  void makeTree() const
+  {
+    if (made_) {
+      std::call_once(*made_, [this] {
+        if (!this->tree_->getInputCloud()) {  // else another cloud has been set since
+          this->tree_->setInputCloud(this->input_);
+        }
+      });
+    }
+  }
+
+  std::shared_ptr<std::once_flag> made_;
 };
 
 }  // namespace pcl_floam

@@ -79,8 +79,7 @@ struct RegistrationParameters {
   /// constrained directions have 0.1 to 1, the way along a corridor with doors 0.001. [0, 0.1]; 0 follows every
   /// direction.
   double weak_threshold = 2e-4;
-  /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero. For features against a
-  /// map: the odometry, localisation, `setInputTargetMap`; clouds are registered in all of them. Exact for
+  /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero. Exact for
   /// \ref kPlanarMotion, for all translations and for all rotations; else to second order of the correction.
   DegreesOfFreedom locked = {};
 };

@@ -9,12 +9,13 @@
 
 namespace pcl_floam {
 
-/// Whether a matrix is a rigid motion up to rounding.
-template <typename Matrix>
-[[nodiscard]] bool isRigid(const Matrix& matrix)
+/// What an affine map does before its rigid motion; the identity if that is all up to rounding.
+[[nodiscard]] inline Eigen::Matrix4d stretchOf(const Eigen::Matrix4d& map, const SE3& motion)
 {
-  const Eigen::Matrix3d linear = matrix.template topLeftCorner<3, 3>().template cast<double>();
-  return (linear.transpose() * linear - Eigen::Matrix3d::Identity()).norm() < 1e-3 && linear.determinant() > 0.0;
+  constexpr double kRounding = 1e-3;
+  const Eigen::Matrix4d stretch = motion.inverse().matrix() * map;
+  return (stretch - Eigen::Matrix4d::Identity()).norm() < kRounding ? Eigen::Matrix4d(Eigen::Matrix4d::Identity())
+                                                                    : stretch;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -87,7 +88,8 @@ SE3 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::roughPose(const SE3
   run.guess = guess;
   run.threads = threads_;
   run.max_distance = this->corr_dist_threshold_;
-  return alignRoughly(PreparedCloud::thinned(viewOf(*this->input_), selectableSource(), threads_),
+  run.locked = parameters_.locked;
+  return alignRoughly(PreparedCloud::thinned(viewOf(*registered_), selectableSource(), threads_),
                       *prepared_target_->thinned, run);
 }
 
@@ -117,7 +119,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
                                                                                              bool coarse_first)
 {
   const PreparedCloud& target = targetPoints();
-  const PreparedCloud source(viewOf(*this->input_), selectableSource(), threads_);
+  const PreparedCloud source(viewOf(*registered_), selectableSource(), threads_);
   CloudRegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
@@ -128,6 +130,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
   run.reciprocal = this->use_reciprocal_correspondence_;
   run.kernel = parameters_.kernel;
+  run.locked = parameters_.locked;
   run.wants_matches = this->update_visualizer_ != nullptr || hasCriteriaOfItsOwn();
   if (!this->correspondence_rejectors_.empty()) {
     run.reject = [this](const SE3& pose, std::vector<PointMatch>& matches) { reject(pose, matches); };
@@ -170,9 +173,9 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   if (target_map_ || (!wantsPoints() && targetFeatures() != nullptr)) {
     FeatureSet source = source_features_
                             ? *source_features_
-                            : scanLineFeatures(viewOf(*this->input_), sensor_, feature_parameters_, selectableSource());
+                            : scanLineFeatures(viewOf(*registered_), sensor_, feature_parameters_, selectableSource());
     if (target_map_ && source.planes.empty() && source.edges.empty()) {
-      source = pointFeatures(viewOf(*this->input_), selectableSource());
+      source = pointFeatures(viewOf(*registered_), selectableSource());
     }
     if (!source.planes.empty() || !source.edges.empty()) {
       const RegistrationReport report = registerByFeatures(guess, source);
@@ -202,12 +205,23 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::runBaseLoop(PointC
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::takeSource(const Matrix4& stretch)
+{
+  registered_ = this->input_;
+  if (stretch != Matrix4::Identity()) {
+    auto stretched = pcl::make_shared<PointCloudSource>(*this->input_);
+    this->transformCloud(*this->input_, *stretched, stretch);
+    registered_ = stretched;
+  }
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformation(PointCloudSource& output,
                                                                                     const Matrix4& guess)
 {
   const bool replaced =
       this->transformation_estimation_ != own_estimation_ || this->correspondence_estimation_ != own_correspondences_;
-  if (!given_indices_ && guess.allFinite() && (replaced || !isRigid(guess))) {
+  if (!given_indices_ && guess.allFinite() && replaced) {
     runBaseLoop(output, guess);
     return;
   }
@@ -215,9 +229,12 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
   this->transformation_ = this->previous_transformation_ = Matrix4::Identity();
   setUpCriteria();
   SE3 start{Eigen::Transform<Scalar, 3, Eigen::Affine>(guess)};
+  Matrix4 stretch = Matrix4::Identity();
   if (start.isFinite()) {
     start.rotation = nearestRotation(start.rotation);
+    stretch = stretchOf(guess.template cast<double>(), start).template cast<Scalar>();
   }
+  takeSource(stretch);
   report_ = registerSource(start);
   if (!report_.hasConverged()) {
     report_.target_T_source = start.isFinite() ? start : SE3();
@@ -225,11 +242,12 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
   concludeCriteria();
   this->final_transformation_ = Matrix4::Identity();
   if (this->converged_) {
-    this->final_transformation_ = report_.target_T_source.template matrix<Scalar>();
+    this->final_transformation_ = report_.target_T_source.template matrix<Scalar>() * stretch;
   } else if (guess.allFinite()) {
     this->final_transformation_ = guess;
   }
   target_blob_.reset();
+  registered_.reset();
   output = *this->input_;  // with indices set, the base has made it smaller
   this->transformCloud(*this->input_, output, this->final_transformation_);
 }

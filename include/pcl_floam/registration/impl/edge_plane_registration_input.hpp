@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <typeinfo>
 
 namespace pcl_floam {
 
@@ -22,8 +23,10 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setParameters(const RegistrationParameters& parameters)
 {
   validate(parameters);
+  if (this->max_iterations_ == parameters_.max_iterations) {  // else setMaximumIterations has been called
+    this->max_iterations_ = parameters.max_iterations;
+  }
   parameters_ = parameters;
-  this->max_iterations_ = parameters.max_iterations;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -41,10 +44,32 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const Se
   prepared_target_.reset();
 }
 
+/// What the last align() found does not belong to other input.
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::forgetResult()
+{
+  this->converged_ = false;
+  report_ = RegistrationReport();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSourceFeatures(const FeatureSet& features)
+{
+  forgetResult();
+  source_features_ = features;
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearSourceFeatures()
+{
+  forgetResult();
+  source_features_.reset();
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputSource(const PointCloudSourceConstPtr& cloud)
 {
-  this->converged_ = false;
+  forgetResult();
   if (cloud && !cloud->empty()) {
     Base::setInputSource(cloud);
   } else {
@@ -57,21 +82,32 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputSource(con
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTarget(const PointCloudTargetConstPtr& cloud)
 {
-  this->converged_ = false;
+  forgetResult();
   if (cloud && !cloud->empty()) {
     Base::setInputTarget(cloud);
+    const auto& tree = *this->tree_;
+    if (typeid(tree) == typeid(FiniteSearch<PointTarget>) && !this->force_no_recompute_) {
+      static_cast<FiniteSearch<PointTarget>&>(*this->tree_).setInputCloudLater(cloud);
+      this->target_cloud_updated_ = false;  // mostly nobody asks, and then align() need not make the tree
+    }
   } else {
     this->target_ = cloud;
     this->target_cloud_updated_ = true;
   }
+  map_cloud_.reset();
   prepared_target_.reset();  // also under the same pointer the cloud may have changed
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map)
 {
+  forgetResult();
   target_map_ = map;
-  if (map && !this->target_) {
+  if (this->target_ && this->target_ != map_cloud_) {
+    return;  // the user's
+  }
+  this->target_.reset();
+  if (map) {
     auto cloud = pcl::make_shared<PointCloudTarget>();
     for (const Eigen::Vector3d& position : map->points(FeatureKind::plane)) {
       PointTarget point;
@@ -79,6 +115,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(
       cloud->push_back(point);
     }
     setInputTarget(cloud);
+    map_cloud_ = cloud;
   }
 }
 

@@ -97,8 +97,8 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 typename EdgePlaneRegistration<PointSource, PointTarget, Scalar>::PointCloudSource
 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::movedSource(const SE3& target_T_source)
 {
-  PointCloudSource moved = *this->input_;
-  this->transformCloud(*this->input_, moved, target_T_source.template matrix<Scalar>());
+  PointCloudSource moved = *registered_;
+  this->transformCloud(*registered_, moved, target_T_source.template matrix<Scalar>());
   return moved;
 }
 
