@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
 
 namespace pcl_floam::test {
 namespace {
@@ -81,32 +82,62 @@ RegistrationReport align(const Cloud::Ptr& source, const Cloud::Ptr& target)
 TEST(RegistrationBadInput, CloudsWithoutPointsAreNoSourceAndNoTarget)
 {
   const auto object = sampledObject(1, 1.0);
-  const auto empty = pcl::make_shared<Cloud>();
-  for (const auto& nothing : {empty, allNan()}) {
-    EXPECT_EQ(align(nothing, object).termination, Termination::too_few_features);
-    EXPECT_EQ(align(object, nothing).termination, Termination::empty_target);
-    EXPECT_FALSE(align(nothing, nothing).hasConverged());
-  }
+  EXPECT_EQ(align(allNan(), object).termination, Termination::too_few_features);
+  EXPECT_EQ(align(object, allNan()).termination, Termination::empty_target);
+  EXPECT_FALSE(align(allNan(), allNan()).hasConverged());
 }
 
-TEST(RegistrationBadInput, AnEmptyCloudDoesNotLeaveTheLastAnswerStanding)
+/// What is printed to standard error meanwhile.
+template <typename Action>
+std::string printedBy(const Action& action)
+{
+  testing::internal::CaptureStderr();
+  action();
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(RegistrationBadInput, EmptyCloudsAreRefusedAloudAndTheOnesBeforeStay)
+{
+  const auto source = sampledObject(2, 1.0);
+  const auto target = sampledObject(1, 1.0);
+  Registration registration;
+  pcl::IterativeClosestPoint<Point, Point> icp;
+  for (auto* each : {static_cast<pcl::IterativeClosestPoint<Point, Point>*>(&registration), &icp}) {
+    each->setInputSource(source);
+    each->setInputTarget(target);
+    Cloud output;
+    each->align(output);
+    ASSERT_TRUE(each->hasConverged());
+    const Eigen::Matrix4f result = each->getFinalTransformation();
+    const auto empty = pcl::make_shared<Cloud>();
+    EXPECT_NE(printedBy([&] { each->setInputSource(empty); }).find("setInputSource] Invalid or empty"),
+              std::string::npos);
+    EXPECT_NE(printedBy([&] { each->setInputTarget(empty); }).find("setInputTarget] Invalid or empty"),
+              std::string::npos);
+    EXPECT_EQ(each->getInputSource(), source);
+    EXPECT_EQ(each->getInputTarget(), target);
+    EXPECT_TRUE(each->hasConverged());
+    each->align(output);
+    EXPECT_EQ(each->getFinalTransformation(), result);
+  }
+  EXPECT_NE(printedBy([&] { registration.setInputSource(nullptr); }), "");
+  EXPECT_NE(printedBy([&] { registration.setInputTarget(nullptr); }), "");
+  EXPECT_EQ(registration.getInputSource(), source);
+  EXPECT_EQ(registration.getInputTarget(), target);
+  EXPECT_TRUE(registration.report().hasConverged());
+}
+
+TEST(RegistrationBadInput, FailureIsSaidAloudAndSuccessIsNot)
 {
   const auto object = sampledObject(1, 1.0);
-  Registration registration;
-  registration.setInputSource(object);
-  registration.setInputTarget(object);
-  ASSERT_TRUE(align(registration).hasConverged());
-  registration.setInputSource(pcl::make_shared<Cloud>());
-  EXPECT_FALSE(registration.hasConverged());
-  EXPECT_FALSE(align(registration).hasConverged());
-  registration.setInputSource(object);
-  EXPECT_TRUE(align(registration).hasConverged());
-  registration.setInputTarget(nullptr);
-  Cloud output;
-  registration.align(output);
-  EXPECT_FALSE(registration.hasConverged());
-  registration.setInputTarget(object);
-  EXPECT_TRUE(align(registration).hasConverged());
+  const auto alignWith = [](const Cloud::Ptr& source, const Cloud::Ptr& target) {
+    return printedBy([&] { EXPECT_NE(align(source, target).termination, Termination::not_run); });
+  };
+  EXPECT_EQ(alignWith(object, object), "");
+  EXPECT_NE(
+      alignWith(cloudOf({{2.0F, 1.0F, 0.3F}}), object).find("[pcl::EdgePlaneRegistration::computeTransformation]"),
+      std::string::npos);
+  EXPECT_NE(alignWith(allNan(), object).find("too few features"), std::string::npos);
 }
 
 TEST(RegistrationBadInput, OneOrTwoPointsGiveNoPose)

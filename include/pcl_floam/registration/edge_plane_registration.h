@@ -8,6 +8,7 @@
 #include <pcl_floam/registration/cloud_registration.h>
 #include <pcl_floam/registration/feature_registration.h>
 
+#include <pcl/console/print.h>
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/registration/icp.h>
 
@@ -61,8 +62,8 @@ namespace pcl_floam {
 /// Rejectors, reciprocal matches, the Euclidean fitness epsilon and a search object of the user's speak of points: with
 /// them scans are registered by all points, too.
 ///
-/// Input that constrains no pose is reported, not refused: hasConverged() is false and report() tells why, or the best
-/// partial answer comes with its weak directions. Indices that are out of the source's range count as such input.
+/// Input that constrains no pose is reported: hasConverged() is false, report() and an error message tell why, or the
+/// best partial answer comes with its weak directions. Indices that are out of the source's range count as such input.
 ///
 /// Header-only like all classes that derive from PCL's, whose layout depends on the compiler's flags; what is compiled
 /// in advance is the core, for all point types alike. Types of one's own need nothing but their registration with PCL
@@ -107,7 +108,7 @@ public:
   void setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map);
   [[nodiscard]] KeyframeVoxelMap::ConstPtr getInputTargetMap() const { return target_map_; }
 
-  /// Unlike ICP's, takes an empty cloud, too, and does not keep the one before: align() then fails.
+  /// As ICP's: an empty cloud is refused with an error message, and the one before stays.
   void setInputSource(const PointCloudSourceConstPtr& cloud) override;
   /// See setInputSource(). The cloud is new each time, also under the same pointer.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
@@ -136,6 +137,7 @@ private:
   };
 
   void forgetResult();
+  void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
   [[nodiscard]] const KeyframeVoxelMap* targetFeatures();

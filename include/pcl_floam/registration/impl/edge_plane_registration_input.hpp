@@ -69,30 +69,36 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearSourceFeature
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputSource(const PointCloudSourceConstPtr& cloud)
 {
-  forgetResult();
-  if (cloud && !cloud->empty()) {
-    Base::setInputSource(cloud);
-  } else {
-    this->input_ = cloud;
-    this->source_cloud_updated_ = true;
+  if (!cloud || cloud->empty()) {
+    PCL_ERROR("[pcl::%s::setInputSource] Invalid or empty point cloud dataset given!\n", this->getClassName().c_str());
+    return;
   }
+  forgetResult();
+  Base::setInputSource(cloud);
   checkIndices();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTarget(const PointCloudTargetConstPtr& cloud)
 {
+  if (!cloud || cloud->empty()) {
+    PCL_ERROR("[pcl::%s::setInputTarget] Invalid or empty point cloud dataset given!\n", this->getClassName().c_str());
+    return;
+  }
+  Base::setInputTarget(cloud);
+  takeTarget(cloud);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::takeTarget(const PointCloudTargetConstPtr& cloud)
+{
   forgetResult();
-  if (cloud && !cloud->empty()) {
-    Base::setInputTarget(cloud);
-    const auto& tree = *this->tree_;
-    if (typeid(tree) == typeid(FiniteSearch<PointTarget>) && !this->force_no_recompute_) {
-      static_cast<FiniteSearch<PointTarget>&>(*this->tree_).setInputCloudLater(cloud);
-      this->target_cloud_updated_ = false;  // mostly nobody asks, and then align() need not make the tree
-    }
-  } else {
-    this->target_ = cloud;
-    this->target_cloud_updated_ = true;
+  this->target_ = cloud;
+  this->target_cloud_updated_ = true;
+  const auto& tree = *this->tree_;
+  if (typeid(tree) == typeid(FiniteSearch<PointTarget>) && !this->force_no_recompute_) {
+    static_cast<FiniteSearch<PointTarget>&>(*this->tree_).setInputCloudLater(cloud);
+    this->target_cloud_updated_ = false;  // mostly nobody asks, and then align() need not make the tree
   }
   map_cloud_.reset();
   prepared_target_.reset();  // also under the same pointer the cloud may have changed
@@ -114,7 +120,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(
       point.getVector3fMap() = position.template cast<float>();
       cloud->push_back(point);
     }
-    setInputTarget(cloud);
+    takeTarget(cloud);
     map_cloud_ = cloud;
   }
 }

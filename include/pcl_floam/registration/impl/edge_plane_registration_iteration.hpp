@@ -73,6 +73,10 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::concludeCriteria()
   auto& criteria = *this->convergence_criteria_;
   criteria.setMaximumIterations(this->max_iterations_);
   this->converged_ = report_.hasConverged();
+  if (!this->converged_) {
+    PCL_ERROR("[pcl::%s::computeTransformation] No pose found: %s.\n", this->getClassName().c_str(),
+              toString(report_.termination));
+  }
   switch (report_.termination) {
     case Termination::converged:
       if (criteria.getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_NOT_CONVERGED) {
