@@ -16,6 +16,9 @@ constexpr double kFirstVoxel = 2.5;
 /// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
 constexpr std::size_t kCoarsestPoints = 1500;
 
+/// Of a moved point whose coordinates are in single precision, as a share of the largest.
+constexpr double kRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
+
 /// Voxels of a thinned cloud, in extents.
 constexpr double kRoughVoxel = 0.03;
 
@@ -130,6 +133,7 @@ CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 {
   const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
   CloudLevel level = makeLevel(means, numbers, threads);
+  level.rounding = finer.rounding;
   level.voxel = voxel;
   return level;
 }
@@ -139,6 +143,7 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
 {
   const Points points = takePoints(cloud, selectable);
   full_ = makeLevel(points.position, points.number, threads);
+  full_.rounding = kRounding * points.largest;
 }
 
 std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
@@ -149,6 +154,7 @@ std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, cons
   const double voxel_size = std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min());
   const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
   pyramid->full_ = makeLevel(means, numbers, threads);
+  pyramid->full_.rounding = kRounding * points.largest;
   return pyramid;
 }
 
@@ -176,6 +182,7 @@ CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std:
   const double count = std::max(1.0, static_cast<double>(points.number.size()));
   for (const int i : points.number) {
     origin_ += position(i);
+    points.largest = std::max(points.largest, position(i).cwiseAbs().maxCoeff());
   }
   origin_ /= count;
   points.position.reserve(points.number.size());

@@ -22,6 +22,7 @@ struct CloudLevel {
   std::vector<int> number;         ///< in the tree's order: the cloud's point that is this one, or nearest to the mean
   std::vector<LocalShape> shapes;  ///< in the tree's order
   double spacing = 0.0;            ///< typical distance of neighbours, m
+  double rounding = 0.0;           ///< m; of the cloud's coordinates, wherever its frame's origin is
   double voxel = 0.0;              ///< m; size of the voxels whose means the points are
 };
 
@@ -57,6 +58,7 @@ private:
   struct Points {
     std::vector<Eigen::Vector3f> position;  ///< relative to the origin
     std::vector<int> number;                ///< in the cloud
+    double largest = 0.0;                   ///< m; of the coordinates in the cloud's frame
   };
 
   explicit CloudPyramid(int threads) : threads_(threads) {}

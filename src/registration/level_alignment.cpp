@@ -1,6 +1,6 @@
 #include "registration/level_alignment.h"
 
-#include "registration/robust_kernel.h"
+#include "common/median.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,45 +12,14 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kChunk = 512;
-
 /// Matches may be this many spacings apart, and this many times the median distance while that is large.
 constexpr double kGateSpacings = 3.0;
 constexpr double kGateMedians = 3.0;
 
-/// For normally distributed residuals, 1.4826 medians of the absolute value are one standard deviation.
-constexpr double kScalePerMedian = 2.0 * 1.4826;
-constexpr double kSmallestScale = 1e-4;  ///< of the kernel, in spacings
-
-double medianOf(std::vector<float>& values)
-{
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
-}
-
 }  // namespace
 
-AlignmentSums& AlignmentSums::operator+=(const AlignmentSums& other)
-{
-  information += other.information;
-  gradient += other.gradient;
-  cost += other.cost;
-  weighted_squares += other.weighted_squares;
-  weight += other.weight;
-  lines += other.lines;
-  planes += other.planes;
-  points += other.points;
-  line_inliers += other.line_inliers;
-  plane_inliers += other.plane_inliers;
-  return *this;
-}
-
 LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
-                               bool finest, double along, bool robust)
+                               bool finest, double along, bool robust, double width)
     : source_(source),
       target_(target),
       run_(run),
@@ -59,6 +28,7 @@ LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& targe
       robust_(robust),
       spacing_(std::max(source.spacing, target.spacing)),
       gate_(run.max_distance),
+      width_(width),
       last_searches_(source.tree.size()),
       match_(source.tree.size(), -1),
       squared_distance_(source.tree.size(), 0.0F),
@@ -156,13 +126,24 @@ void LevelAlignment::narrow()
       squares.push_back(squared_distance_[i]);
     }
   }
-  const double median = std::sqrt(medianOf(squares));
+  const double median = std::sqrt(static_cast<double>(medianOf(squares)));
   gate_ = std::min(gate_, std::max(kGateSpacings * spacing_, kGateMedians * median));
   for (std::size_t i = 0; i < match_.size(); ++i) {
     if (static_cast<double>(squared_distance_[i]) > gate_ * gate_) {
       match_[i] = -1;
     }
   }
+}
+
+/// Whether all matches lie on each other but for rounding. Then there is nothing to reject, and rejectors that compare
+/// distances with their spread would refuse them all.
+bool LevelAlignment::coincide() const
+{
+  float farthest = 0.0F;
+  for (std::size_t i = 0; i < match_.size(); ++i) {
+    farthest = match_[i] >= 0 ? std::max(farthest, squared_distance_[i]) : farthest;
+  }
+  return std::sqrt(static_cast<double>(farthest)) <= source_.rounding + target_.rounding;
 }
 
 void LevelAlignment::listMatches()
@@ -189,115 +170,6 @@ void LevelAlignment::keepListed()
       match_[i] = -1;
     }
   }
-}
-
-LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i) const
-{
-  const auto j = static_cast<std::size_t>(match_[i]);
-  LocalShape turned = source_.shapes[i];
-  turned.axis = (pose.rotation * turned.axis.cast<double>()).cast<float>();
-  const Eigen::Matrix3d c = target_.shapes[j].covariance(along_) + turned.covariance(along_);
-  const auto onSurface = [](const CloudLevel& level, std::size_t point) {
-    return Eigen::Vector3d((level.tree.points()[point] + level.shapes[point].to_surface).cast<double>());
-  };
-  const Eigen::Vector3d difference = pose * onSurface(source_, i) - onSurface(target_, j);
-  // M = 2 along_ c^-1: one across two parallel planes.
-  const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
-  const double xy = c(0, 2) * c(1, 2) - c(0, 1) * c(2, 2);
-  const double xz = c(0, 1) * c(1, 2) - c(0, 2) * c(1, 1);
-  const double scale = 2.0 * along_ / (c(0, 0) * xx + c(0, 1) * xy + c(0, 2) * xz);
-  Eigen::Matrix3d m;
-  m(0, 0) = scale * xx;
-  m(0, 1) = m(1, 0) = scale * xy;
-  m(0, 2) = m(2, 0) = scale * xz;
-  m(1, 1) = scale * (c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2));
-  m(1, 2) = m(2, 1) = scale * (c(0, 1) * c(0, 2) - c(0, 0) * c(1, 2));
-  m(2, 2) = scale * (c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1));
-  const auto f = [](double value) { return static_cast<float>(value); };
-  return {difference.cast<float>(),
-          f(m(0, 0)),
-          f(m(0, 1)),
-          f(m(0, 2)),
-          f(m(1, 1)),
-          f(m(1, 2)),
-          f(m(2, 2)),
-          f(std::max(0.0, difference.dot(m * difference)))};
-}
-
-void LevelAlignment::weigh(const SE3& pose)
-{
-#pragma omp parallel for num_threads(run_.threads) schedule(static)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    if (match_[i] >= 0) {
-      residuals_[i] = residual(pose, i);
-    } else {
-      residuals_[i].squared = -1.0F;
-    }
-  }
-  std::vector<float> squares;
-  squares.reserve(residuals_.size());
-  for (const Residual& r : residuals_) {
-    if (r.squared >= 0.0F) {
-      squares.push_back(r.squared);
-    }
-  }
-  scale_ = std::max(kSmallestScale * spacing_, kScalePerMedian * std::sqrt(medianOf(squares)));
-  scale_ = std::max(scale_, std::sqrt(static_cast<double>(std::numeric_limits<float>::min())));
-}
-
-void LevelAlignment::accumulate(const SE3& pose, std::size_t i, AlignmentSums& sums) const
-{
-  const Residual& r = residuals_[i];
-  const auto squared = static_cast<double>(r.squared);
-  const RobustKernel kernel = robust_ ? run_.kernel : RobustKernel::none;
-  const double robust = robustWeight(kernel, squared, scale_);
-  Eigen::Matrix3f symmetric;
-  symmetric << r.xx, r.xy, r.xz, r.xy, r.yy, r.yz, r.xz, r.yz, r.zz;
-  const Eigen::Matrix3d m = robust * symmetric.cast<double>();
-  const Eigen::Vector3d arm = pose.rotation * source_.tree.points()[i].cast<double>();
-  // J = [I, -[arm]x]: with m's columns, m J = [m, -m [arm]x] = [m, (arm x m)^T].
-  Eigen::Matrix3d turned;
-  for (int column = 0; column < 3; ++column) {
-    turned.col(column) = arm.cross(m.col(column));
-  }
-  const Eigen::Vector3d pull = m * r.difference.cast<double>();
-  sums.information.topLeftCorner<3, 3>() += m;
-  sums.information.bottomLeftCorner<3, 3>() += turned;
-  for (int row = 0; row < 3; ++row) {
-    sums.information.bottomRightCorner<3, 3>().row(row) += arm.cross(turned.row(row).transpose()).transpose();
-  }
-  sums.gradient.head<3>() += pull;
-  sums.gradient.tail<3>() += arm.cross(pull);
-  sums.cost += 0.5 * robustCost(kernel, squared, scale_);
-  sums.weighted_squares += robust * squared;
-  sums.weight += m.trace();
-  const ShapeKind kind = target_.shapes[static_cast<std::size_t>(match_[i])].kind;
-  sums.lines += kind == ShapeKind::line ? 1 : 0;
-  sums.planes += kind == ShapeKind::plane ? 1 : 0;
-  sums.points += kind == ShapeKind::point ? 1 : 0;
-  sums.line_inliers += kind == ShapeKind::line && robust >= 0.5 ? 1 : 0;
-  sums.plane_inliers += kind == ShapeKind::plane && robust >= 0.5 ? 1 : 0;
-}
-
-AlignmentSums LevelAlignment::sum(const SE3& pose) const
-{
-  std::vector<AlignmentSums> chunks((residuals_.size() + kChunk - 1) / kChunk);
-#pragma omp parallel for num_threads(run_.threads) schedule(static)
-  for (std::ptrdiff_t chunk = 0; chunk < static_cast<std::ptrdiff_t>(chunks.size()); ++chunk) {
-    const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
-    for (std::size_t i = first; i < std::min(first + kChunk, residuals_.size()); ++i) {
-      if (residuals_[i].squared >= 0.0F) {
-        accumulate(pose, i, chunks[static_cast<std::size_t>(chunk)]);
-      }
-    }
-  }
-  AlignmentSums result;
-  for (const AlignmentSums& sums : chunks) {
-    result += sums;
-  }
-  result.information.topRightCorner<3, 3>() = result.information.bottomLeftCorner<3, 3>().transpose();
-  return result;
 }
 
 }  // namespace pcl_floam

@@ -33,8 +33,9 @@ class LevelAlignment {
 public:
   /// \param along how much a direction along a surface counts against the one across it: 1 draws points to points
   /// \param robust whether far matches are left out and large residuals count less
+  /// \param width  m; how far off the pose may be: the kernel takes no smaller residual for an outlier
   LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
-                 double along, bool robust = true);
+                 double along, bool robust = true, double width = 0.0);
 
   /// Finds the matches at a pose and sums up what they say.
   /// \param to_frames from the pose between the origins to the one between the clouds' frames
@@ -45,7 +46,7 @@ public:
     if (run_.reject || run_.wants_matches) {
       listMatches();
     }
-    if (run_.reject) {
+    if (run_.reject && !coincide()) {
       run_.reject(to_frames(pose), matches_);
       keepListed();
     }
@@ -92,6 +93,7 @@ private:
   void searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound);
   void keepReciprocal(const SE3& pose);
   void narrow();
+  [[nodiscard]] bool coincide() const;
   void listMatches();
   void keepListed();
   void weigh(const SE3& pose);
@@ -106,7 +108,8 @@ private:
   double along_;
   bool robust_;
   double spacing_;
-  double gate_;                            ///< m; pairs farther apart are no matches
+  double gate_;  ///< m; pairs farther apart are no matches
+  double width_;
   double scale_ = 0.0;                     ///< of the robust kernel, m
   std::vector<LastSearch> last_searches_;  ///< per source point
   std::vector<int> match_;                 ///< per source point, the target point, or -1

@@ -6,6 +6,7 @@
 #include <pcl/registration/correspondence_rejection_distance.h>
 #include <pcl/registration/correspondence_rejection_surface_normal.h>
 #include <pcl/registration/correspondence_rejection_trimmed.h>
+#include <pcl/registration/correspondence_rejection_var_trimmed.h>
 
 #include <gtest/gtest.h>
 
@@ -45,6 +46,19 @@ TEST(RegistrationSettings, PclsRejectorsWork)
   trimmed->setOverlapRatio(0.7F);
   setup.registration.addCorrespondenceRejector(trimmed);
   EXPECT_LT(setup.align(), 0.005);
+  EXPECT_TRUE(setup.registration.hasConverged());
+}
+
+TEST(RegistrationSettings, ARejectorByTheSpreadOfDistancesBearsThatThereIsNone)
+{
+  // It keeps what is nearer than the spread, of which exact copies have none.
+  ObjectPair setup;
+  pcl::transformPointCloud(*setup.target, *setup.source, Eigen::Matrix4f(motion(1.0).inverse()));
+  setup.registration.addCorrespondenceRejector(pcl::make_shared<pcl::registration::CorrespondenceRejectorVarTrimmed>());
+  EXPECT_LT(setup.align(), 1e-4);
+  EXPECT_TRUE(setup.registration.hasConverged());
+  setup.registration.setInputSource(setup.target);
+  setup.registration.align(setup.output);
   EXPECT_TRUE(setup.registration.hasConverged());
 }
 
@@ -160,6 +174,22 @@ TEST(RegistrationSettings, EpsilonsEndItSoonerOrLater)
   setup.registration.setTransformationRotationEpsilon(0.0);
   setup.align();
   EXPECT_GE(setup.registration.report().iterations, usual);
+}
+
+TEST(RegistrationSettings, TheLastRegistrationsErrorDoesNotEndTheNext)
+{
+  // A mean squared error that does not change ends it, but not between two registrations.
+  ObjectPair setup;
+  setup.registration.setTransformationEpsilon(1e-14);
+  setup.align();
+  const int iterations = setup.registration.report().iterations;
+  ASSERT_GT(iterations, 1);
+  const Eigen::Matrix4f result = setup.registration.getFinalTransformation();
+  for (int i = 0; i < 3; ++i) {
+    setup.align();
+    EXPECT_EQ(setup.registration.report().iterations, iterations);
+    EXPECT_EQ(setup.registration.getFinalTransformation(), result);
+  }
 }
 
 TEST(RegistrationSettings, TheFitnessEpsilonIsRelative)

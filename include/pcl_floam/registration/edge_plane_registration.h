@@ -14,11 +14,27 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace pcl_floam {
+
+/// ICP's criteria, which know nothing of the registration before: PCL's compare with its mean squared error.
+template <typename Scalar>
+class FreshCriteria : public pcl::registration::DefaultConvergenceCriteria<Scalar> {
+  using Base = pcl::registration::DefaultConvergenceCriteria<Scalar>;
+
+public:
+  using Base::Base;
+
+  void start()
+  {
+    this->correspondences_prev_mse_ = std::numeric_limits<double>::max();
+    this->iterations_similar_transforms_ = 0;
+  }
+};
 
 /// Registers a cloud with another cloud or with a map by point-to-line and point-to-plane distances (the paper's
 /// "Pose Estimation"), in place of `pcl::IterativeClosestPoint`.
@@ -47,7 +63,8 @@ namespace pcl_floam {
 ///   the typical distance.
 /// - `setTransformationEpsilon` (a *squared* translation), `setTransformationRotationEpsilon` (a *cosine*),
 ///   `setEuclideanFitnessEpsilon` (relative change of the mean squared distance) and those of getConvergeCriteria() end
-///   it as they end ICP. Unset, it ends when no point moves by more than a small fraction of the spacing.
+///   the iterations on the full clouds as they end ICP. Unset, these end when no point moves by more than a small
+///   fraction of the spacing. Those on features and on thinned clouds do not end sooner for a coarse threshold.
 /// - Rejectors run in each iteration, reciprocal matches are honoured, and the visualisation callback is called once an
 ///   iteration on the full clouds. Rejectors see the thinned clouds' matches, too: these name the points nearest to the
 ///   voxels' means.

@@ -64,10 +64,11 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   parameters.max_iterations = iterationLimit();
   parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
   if (this->transformation_epsilon_ > 0.0) {
-    parameters.translation_epsilon = std::sqrt(this->transformation_epsilon_);
+    parameters.translation_epsilon = std::min(parameters.translation_epsilon, std::sqrt(this->transformation_epsilon_));
   }
   if (this->transformation_rotation_epsilon_ > 0.0) {
-    parameters.rotation_epsilon = std::acos(std::min(1.0, this->transformation_rotation_epsilon_));
+    parameters.rotation_epsilon =
+        std::min(parameters.rotation_epsilon, std::acos(std::min(1.0, this->transformation_rotation_epsilon_)));
   }
   return parameters;
 }

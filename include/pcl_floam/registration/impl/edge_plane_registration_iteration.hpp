@@ -53,6 +53,9 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setUpCriteria()
 {
   auto& criteria = *this->convergence_criteria_;
+  if (auto* fresh = dynamic_cast<FreshCriteria<Scalar>*>(&criteria)) {  // else the user's
+    fresh->start();
+  }
   criteria.setMaximumIterations(std::numeric_limits<int>::max());  // counted elsewhere
   criteria.setRelativeMSE(this->euclidean_fitness_epsilon_);
   criteria.setTranslationThreshold(this->transformation_epsilon_);
