@@ -17,16 +17,22 @@ constexpr double kNoInformation = 1e-9;
 /// Added to all eigenvalues, as a share of the largest: keeps steps along the weakest directions short.
 constexpr double kDamping = 1e-7;
 
-/// Gram and Schmidt's, for independent columns.
-FreeMotions orthonormal(FreeMotions columns)
+/// Gram and Schmidt's: an orthonormal basis of what columns have beside those of an orthonormal basis.
+FreeMotions orthonormalBeside(const FreeMotions& known, const FreeMotions& columns)
 {
-  for (int i = 0; i < columns.cols(); ++i) {
-    for (int j = 0; j < i; ++j) {
-      columns.col(i) -= columns.col(j).dot(columns.col(i)) * columns.col(j);
+  constexpr double kDependent = 1e-6;
+  FreeMotions all = known;
+  for (int i = 0; i < columns.cols() && all.cols() < 6; ++i) {
+    Eigen::Matrix<double, 6, 1> column = columns.col(i).normalized();
+    for (int j = 0; j < all.cols(); ++j) {
+      column -= all.col(j).dot(column) * all.col(j);
     }
-    columns.col(i).normalize();
+    if (column.norm() > kDependent) {
+      all.conservativeResize(6, all.cols() + 1);
+      all.rightCols<1>() = column.normalized();
+    }
   }
-  return columns;
+  return all.rightCols(all.cols() - known.cols());
 }
 
 }  // namespace
@@ -45,15 +51,20 @@ FreeMotions freeMotions(const DegreesOfFreedom& locked, const Eigen::Vector3d& a
   return free;
 }
 
-AlignmentAnalysis::AlignmentAnalysis(const AlignmentSums& sums, double extent, const FreeMotions& free) : sums_(sums)
+AlignmentAnalysis::AlignmentAnalysis(const AlignmentSums& sums, double extent, const FreeMotions& free,
+                                     const FreeMotions& held)
+    : sums_(sums)
 {
   const double per_metre = extent > 0.0 ? 1.0 / extent : 1.0;
   scale_ << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
   const Matrix scaled = scale_.asDiagonal() * sums.information * scale_.asDiagonal();
-  eigenvectors_.resize(6, free.cols());
-  if (free.cols() > 0) {
+  const auto lengths = [this](const FreeMotions& motions) {
+    return FreeMotions(scale_.cwiseInverse().asDiagonal() * motions);
+  };
+  const FreeMotions basis = orthonormalBeside(orthonormalBeside(FreeMotions(6, 0), lengths(held)), lengths(free));
+  eigenvectors_.resize(6, basis.cols());
+  if (basis.cols() > 0) {
     using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-    const FreeMotions basis = orthonormal(scale_.cwiseInverse().asDiagonal() * free);
     const Within within = basis.transpose() * scaled * basis / std::max(sums.weight, 1e-300);
     const Eigen::SelfAdjointEigenSolver<Within> solver(within);
     eigenvalues_ = solver.eigenvalues();
@@ -78,14 +89,28 @@ Vector6 AlignmentAnalysis::step() const
   return scale_.asDiagonal() * solution;
 }
 
-void AlignmentAnalysis::describe(const Eigen::Vector3d& arm, double weak, RegistrationReport& report) const
+int AlignmentAnalysis::weak(double share) const
+{
+  int count = 0;
+  while (count < eigenvalues_.size() && eigenvalues_[count] < share * largest()) {
+    ++count;
+  }
+  return count;
+}
+
+void AlignmentAnalysis::describe(const Eigen::Vector3d& arm, double weak, const std::vector<double>& shares,
+                                 RegistrationReport& report) const
 {
   report.cost = sums_.cost;
-  const double variance = sums_.weight > 0.0 ? sums_.weighted_squares / sums_.weight : 0.0;
-  report.residual_rms = std::sqrt(variance);
+  report.residual_rms = std::sqrt(variance());
   report.weak_directions.clear();
-  for (int i = 0; i < eigenvalues_.size() && eigenvalues_[i] < weak * largest(); ++i) {
-    report.weak_directions.push_back({eigenvectors_.col(i), eigenvalues_[i]});
+  // Where the pull grows by less than it seems, the noise that it has moves the pose by as much more.
+  Values true_values = eigenvalues_;
+  for (int i = 0; i < static_cast<int>(shares.size()); ++i) {
+    true_values[i] *= shares[static_cast<std::size_t>(i)] * shares[static_cast<std::size_t>(i)];
+  }
+  for (int i = 0; i < this->weak(weak); ++i) {
+    report.weak_directions.push_back({eigenvectors_.col(i), true_values[i]});
   }
   // A perturbation (t, w) about the source's origin is (t + w x arm, w) about the centroid.
   Matrix to_centroid = Matrix::Identity();
@@ -94,9 +119,9 @@ void AlignmentAnalysis::describe(const Eigen::Vector3d& arm, double weak, Regist
   to_origin.topRightCorner<3, 3>() = skew(arm);
   report.information = to_centroid.transpose() * sums_.information * to_centroid;
   const Values inverse =
-      (eigenvalues_.array().max(kNoInformation * largest()) * std::max(sums_.weight, 1e-300)).inverse().matrix();
+      (true_values.array().max(kNoInformation * largest()) * std::max(sums_.weight, 1e-300)).inverse().matrix();
   const FreeMotions vectors = to_origin * scale_.asDiagonal() * eigenvectors_;
-  report.covariance = variance * (vectors * inverse.asDiagonal() * vectors.transpose());
+  report.covariance = variance() * (vectors * inverse.asDiagonal() * vectors.transpose());
 }
 
 }  // namespace pcl_floam

@@ -31,13 +31,18 @@ Termination CloudAlignment::align(LevelAlignment& alignment, int most, double ep
   return Termination::iteration_limit;
 }
 
-/// Applies a step that turns about the source's centroid. \return true if the user says that it is enough
+void CloudAlignment::move(const Vector6& perturbation)
+{
+  pose_.rotation = nearestRotation(expSO3(perturbation.tail<3>()) * pose_.rotation);
+  pose_.translation += perturbation.head<3>();
+  lockTranslation();
+}
+
+/// Applies a step. \return true if the user says that it is enough
 bool CloudAlignment::take(const Vector6& step, const LevelAlignment& alignment, bool watched)
 {
   const SE3 before = toFrames(pose_);
-  pose_.rotation = nearestRotation(expSO3(step.tail<3>()) * pose_.rotation);
-  pose_.translation += step.head<3>();
-  lockTranslation();
+  move(step);
   if (!run_.iterated || !watched) {
     return false;
   }

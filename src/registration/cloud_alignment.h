@@ -26,12 +26,18 @@ public:
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
   void setPose(const SE3& pose) { pose_ = pose; }
+
+  /// Moves by a perturbation, which turns about the source's centroid.
+  void move(const Vector6& perturbation);
+
+  /// Keeps steps from perturbations like these, one a column.
+  void hold(const FreeMotions& perturbations) { held_ = perturbations; }
   [[nodiscard]] SE3 toFrames(const SE3& pose) const { return target_T_origin_ * pose * source_T_origin_.inverse(); }
 
   // Of the last iteration.
   [[nodiscard]] const AlignmentSums& sums() const { return sums_; }
   [[nodiscard]] int iterations() const { return iterations_; }  ///< of the last align()
-  [[nodiscard]] AlignmentAnalysis analysis() const { return {sums_, extent_, freeMotions(run_.locked, arm())}; }
+  [[nodiscard]] AlignmentAnalysis analysis() const { return {sums_, extent_, freeMotions(run_.locked, arm()), held_}; }
 
   /// From the source's frame's origin to its centroid, in the target's axes.
   [[nodiscard]] Eigen::Vector3d arm() const { return pose_.rotation * source_T_origin_.translation; }
@@ -42,6 +48,7 @@ private:
 
   const CloudRegistrationRun& run_;
   double extent_;
+  FreeMotions held_ = FreeMotions(6, 0);
   SE3 source_T_origin_;
   SE3 target_T_origin_;
   SE3 pose_;

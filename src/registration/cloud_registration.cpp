@@ -3,9 +3,11 @@
 #include "registration/cloud_alignment.h"
 #include "registration/start_choice.h"
 #include "registration/start_search.h"
+#include "registration/weak_directions.h"
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -39,12 +41,20 @@ public:
 
   RegistrationReport run()
   {
+    const SE3 guess = alignment_.pose();
     if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
       StartSearch(source_, target_, run_, alignment_).find();
     }
     LevelAlignment level(source_.full(), target_.full(), run_, true, along());
-    report_.termination = alignment_.align(level, run_.max_iterations, finestEpsilon(level.spacing()), true);
-    return finish();
+    const double epsilon = finestEpsilon(level.spacing());
+    report_.termination = alignment_.align(level, run_.max_iterations, epsilon, true);
+    report_.iterations = alignment_.iterations();
+    WeakDirections weak(alignment_, level, kWeak * kAlongSurfaces);
+    const bool whole = report_.hasConverged() && run_.max_iterations >= kFewestForCoarse;
+    if (whole && weak.settle(guess, epsilon)) {
+      report_.termination = Termination::converged;
+    }
+    return finish(whole ? weak.shares() : std::vector<double>());
   }
 
   SE3 runRoughly()
@@ -71,10 +81,10 @@ private:
     return std::min(kEpsilon * spacing, finest);
   }
 
-  RegistrationReport finish()
+  /// \param shares see WeakDirections
+  RegistrationReport finish(const std::vector<double>& shares)
   {
     const AlignmentSums& sums = alignment_.sums();
-    report_.iterations = alignment_.iterations();
     report_.edge_correspondences = sums.lines;
     report_.plane_correspondences = sums.planes;
     report_.point_correspondences = sums.points;
@@ -88,7 +98,7 @@ private:
       return report_;
     }
     report_.target_T_source = result;
-    alignment_.analysis().describe(alignment_.arm(), kWeak * along(), report_);
+    alignment_.analysis().describe(alignment_.arm(), kWeak * along(), shares, report_);
     for (int i = 0; i < 6; ++i) {
       if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
         report_.covariance.row(i).setZero();

@@ -56,7 +56,9 @@ void StartSearch::find()
   alignment_.setPose(choice.better(alignment_.pose(), guess));
   if (!sources_.empty()) {
     drawSurfaces(alignment_.pose());
-    alignment_.setPose(better(0, alignment_.pose(), by_surfaces));
+    // Surfaces cannot tell where flat clouds lie, and points only how much of them overlaps: the product counts both.
+    const auto misfit = [&](const SE3& pose) { return cost(0, pose) * choice.cost(pose); };
+    alignment_.setPose(misfit(alignment_.pose()) <= misfit(by_surfaces) ? alignment_.pose() : by_surfaces);
   }
 }
 
@@ -90,7 +92,7 @@ void StartSearch::drawSurfaces(const SE3& start)
   alignment_.setPose(start);
   for (std::size_t level = sources_.size(); level-- > 0;) {
     if (2.0 * target_.thinnedLevels()[level].spacing <= run_.max_distance) {
-      alignment_.setPose(better(level, alignment_.pose(), start));
+      alignment_.setPose(cost(level, alignment_.pose()) <= cost(level, start) ? alignment_.pose() : start);
       align(surfaces(level));
     }
   }
@@ -107,14 +109,11 @@ LevelAlignment StartSearch::surfaces(std::size_t level) const
   return {sources_[level], target, run_, false, kAlongSurfaces, true, kWidth * target.voxel};
 }
 
-/// The pose at which the typical match on a level costs less.
-SE3 StartSearch::better(std::size_t level, const SE3& a, const SE3& b) const
+/// What the typical match of surfaces on a level costs at a pose.
+double StartSearch::cost(std::size_t level, const SE3& pose) const
 {
-  const auto cost = [this, level](const SE3& pose) {
-    const AlignmentSums sums = surfaces(level).evaluate(pose, [this](const SE3& p) { return alignment_.toFrames(p); });
-    return sums.count() > 0 ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
-  };
-  return cost(a) <= cost(b) ? a : b;
+  const AlignmentSums sums = surfaces(level).evaluate(pose, [this](const SE3& p) { return alignment_.toFrames(p); });
+  return sums.count() > 0 ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace pcl_floam

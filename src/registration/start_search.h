@@ -26,7 +26,7 @@ private:
   void drawSurfaces(const SE3& start);
   void align(LevelAlignment level);
   [[nodiscard]] LevelAlignment surfaces(std::size_t level) const;
-  [[nodiscard]] SE3 better(std::size_t level, const SE3& a, const SE3& b) const;
+  [[nodiscard]] double cost(std::size_t level, const SE3& pose) const;
 
   const CloudPyramid& source_;
   const CloudPyramid& target_;
