@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <string>
 
 namespace pcl_floam {
 
@@ -23,6 +24,23 @@ FieldView::Type typeOf(std::uint8_t datatype)
     case pcl::PCLPointField::FLOAT64: return FieldView::Type::float64;
     default: return FieldView::Type::none;
   }
+}
+
+std::size_t bytesOf(FieldView::Type type)
+{
+  using Type = FieldView::Type;
+  switch (type) {
+    case Type::int8:
+    case Type::uint8: return 1;
+    case Type::int16:
+    case Type::uint16: return 2;
+    case Type::int32:
+    case Type::uint32:
+    case Type::float32: return 4;
+    case Type::float64: return 8;
+    case Type::none: return 0;
+  }
+  return 0;
 }
 
 /// Byte offset of a coordinate that must be a float32.
@@ -50,11 +68,46 @@ FieldView findField(const std::vector<pcl::PCLPointField>& fields, const std::ar
         if (found != nullptr) {
           *found = name;
         }
-        return {typeOf(field.datatype), field.offset};
+        const FieldView::Type type = typeOf(field.datatype);
+        return {type, type == FieldView::Type::none ? 0 : field.offset};
       }
     }
   }
   return {};
+}
+
+/// Fields come from a message or a file: one that ends beyond its point would be read from beyond the cloud.
+void checkWithinPoint(const char* name, std::uint32_t offset, std::size_t bytes, std::uint32_t point_step)
+{
+  if (bytes > point_step || offset > point_step - bytes) {
+    throw std::invalid_argument(std::string("field '") + name + "' of the cloud, " + std::to_string(bytes) +
+                                " bytes at byte " + std::to_string(offset) + ", ends beyond its point of " +
+                                std::to_string(point_step) + " bytes (point_step)");
+  }
+}
+
+void checkFields(const CloudView& view, std::uint32_t point_step)
+{
+  checkWithinPoint("x", view.x_offset, sizeof(float), point_step);
+  checkWithinPoint("y", view.y_offset, sizeof(float), point_step);
+  checkWithinPoint("z", view.z_offset, sizeof(float), point_step);
+  checkWithinPoint("ring", view.ring.offset, bytesOf(view.ring.type), point_step);
+  checkWithinPoint(std::string(view.time_name).c_str(), view.time.offset, bytesOf(view.time.type), point_step);
+  checkWithinPoint("intensity", view.intensity.offset, bytesOf(view.intensity.type), point_step);
+}
+
+/// A view steps from point to point alike across the ends of rows, and reads numbers as this machine has them.
+void checkLayout(const pcl::PCLPointCloud2& cloud)
+{
+  const std::uint64_t row_bytes = static_cast<std::uint64_t>(cloud.width) * cloud.point_step;
+  if (cloud.height > 1 && cloud.row_step != 0 && cloud.row_step != row_bytes) {
+    throw std::invalid_argument("the cloud's rows are " + std::to_string(cloud.row_step) +
+                                " bytes apart (row_step), but have " + std::to_string(row_bytes) +
+                                " bytes of points: take the bytes between them out");
+  }
+  if (cloud.is_bigendian != 0) {
+    throw std::invalid_argument("the cloud's numbers are big-endian: swap their bytes first");
+  }
 }
 
 constexpr std::array<std::string_view, 3> kRingNames{"ring", "line", "channel"};
@@ -84,7 +137,9 @@ void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& vi
 CloudView viewOf(const pcl::PCLPointCloud2& cloud)
 {
   CloudView view;
+  checkLayout(cloud);
   describeFields(cloud.fields, view);
+  checkFields(view, cloud.point_step);
   view.data = cloud.data.data();
   view.size = static_cast<std::size_t>(cloud.width) * cloud.height;
   view.stride = cloud.point_step;

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace pcl_floam::test {
 namespace {
 
@@ -93,6 +95,64 @@ TEST(CloudView, RefusesABlobThatIsTooShort)
   EXPECT_THROW(static_cast<void>(viewOf(blob)), std::invalid_argument);
   blob.point_step = 0;
   EXPECT_THROW(static_cast<void>(viewOf(blob)), std::invalid_argument);
+}
+
+/// Why a cloud is refused; empty if it is not.
+std::string refusal(const pcl::PCLPointCloud2& cloud)
+{
+  try {
+    (void)viewOf(cloud);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CloudView, RefusesFieldsThatReachBeyondThePoint)
+{
+  const auto good = CloudBuilder()
+                        .positions(kReturns)
+                        .field("ring", std::vector<std::uint16_t>(3))
+                        .field("t", std::vector<double>(3));
+  for (const std::string name : {"x", "y", "z", "ring", "t"}) {
+    auto blob = good.build();
+    ASSERT_EQ(refusal(blob), "");
+    for (auto& field : blob.fields) {
+      field.offset = field.name == name ? blob.point_step - 1 : field.offset;
+    }
+    EXPECT_NE(refusal(blob).find("'" + name + "'"), std::string::npos) << refusal(blob);
+    for (auto& field : blob.fields) {
+      field.offset = field.name == name ? 0xFFFFFFFFU : field.offset;
+    }
+    EXPECT_NE(refusal(blob).find("'" + name + "'"), std::string::npos) << "offset and size overflow 32 bits";
+  }
+}
+
+TEST(CloudView, AFieldThatNobodyReadsMayLieAnywhere)
+{
+  auto blob = CloudBuilder().positions(kReturns).field("label", std::vector<std::uint16_t>(3)).build();
+  blob.fields.back().offset = blob.point_step;
+  EXPECT_EQ(refusal(blob), "");
+}
+
+TEST(CloudView, RefusesRowsThatAreLongerThanTheirPoints)
+{
+  auto blob = CloudBuilder().positions(kReturns).build();
+  blob.width = 1;
+  blob.height = 3;
+  blob.row_step = blob.point_step;
+  EXPECT_EQ(refusal(blob), "");
+  blob.row_step = 0;  // many programs leave it out
+  EXPECT_EQ(refusal(blob), "");
+  blob.row_step = blob.point_step + 4;
+  EXPECT_NE(refusal(blob).find("row_step"), std::string::npos);
+}
+
+TEST(CloudView, RefusesNumbersOfTheOtherByteOrder)
+{
+  auto blob = CloudBuilder().positions(kReturns).build();
+  blob.is_bigendian = 1;
+  EXPECT_NE(refusal(blob).find("big-endian"), std::string::npos);
 }
 
 TEST(CloudView, OrganisedShapeIsKept)

@@ -79,8 +79,9 @@ template <typename PointT>
 }
 
 /// The view of a cloud whose point type is known only at run time.
-/// \throws std::invalid_argument if x, y or z is missing or not float32, or the blob is shorter than its
-/// width times height points.
+/// \throws std::invalid_argument if x, y or z is missing or not float32, a field that is read ends beyond its point,
+/// the blob is shorter than its width times height points, its rows have bytes between them (row_step), or its numbers
+/// are big-endian.
 [[nodiscard]] CloudView viewOf(const pcl::PCLPointCloud2& cloud);
 
 }  // namespace pcl_floam
