@@ -8,7 +8,12 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 # What the headers and the link need; the shared libraries that the tools were linked with are found by dpkg-shlibdeps.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libpcl-dev (>= 1.12), libeigen3-dev (>= 3.3), libflann-dev, liblz4-dev, libceres-dev")
+set(CPACK_DEBIAN_PACKAGE_DEPENDS
+    "libpcl-dev (>= 1.12), libeigen3-dev (>= 3.3), libflann-dev, liblz4-dev, libceres-dev")
+get_target_property(libraries pcl_floam_io PCL_FLOAM_RECORDING_LIBRARIES)
+foreach(library IN LISTS libraries)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", lib${library}-dev")
+endforeach()
 find_program(PCL_FLOAM_SHLIBDEPS dpkg-shlibdeps)
 mark_as_advanced(PCL_FLOAM_SHLIBDEPS)
 if(PCL_FLOAM_SHLIBDEPS)

@@ -5,8 +5,12 @@ string(REGEX REPLACE "/$" "" PCL_FLOAM_PC_PREFIX "${PCL_FLOAM_PC_PREFIX}")
 
 # What a static library was built with has to be named by whoever links it.
 set(PCL_FLOAM_PC_LIBRARIES "")
+set(PCL_FLOAM_PC_IO_LIBRARIES "")
 if(PCL_FLOAM_LIBRARY_TYPE STREQUAL "STATIC_LIBRARY")
   set(PCL_FLOAM_PC_LIBRARIES " -lceres -lglog ${OpenMP_CXX_FLAGS}")
+  get_target_property(libraries pcl_floam_io PCL_FLOAM_RECORDING_LIBRARIES)
+  list(TRANSFORM libraries PREPEND " -l")
+  list(JOIN libraries "" PCL_FLOAM_PC_IO_LIBRARIES)
 endif()
 
 foreach(module pcl_floam pcl_floam_io)

@@ -98,7 +98,20 @@ TEST_F(ScanFolder, FoldersWithoutOneKindOfScansAreErrors)
   addScans({"0.bin", "0.pcd"});
   EXPECT_NE(problem().find("both"), std::string::npos);
   EXPECT_NE(problem("missing").find("no such folder"), std::string::npos);
-  EXPECT_NE(problem("0.bin").find("is no folder"), std::string::npos);
+  folder.write("notes.txt", "no scan\n");
+  EXPECT_NE(problem("notes.txt").find("is no scan"), std::string::npos);
+}
+
+TEST_F(ScanFolder, OneFileIsOneScan)
+{
+  addScans({"0.bin", "1.bin"});
+  const ScanSource source(folder.path() / "1.bin");
+  ASSERT_EQ(source.size(), 1U);
+  EXPECT_EQ(source.name(0), "1.bin");
+  EXPECT_EQ(source.folder(), folder.path());
+  pcl::PCLPointCloud2 cloud;
+  source.read(0, cloud);
+  EXPECT_EQ(cloud.width, 1U);
 }
 
 TEST_F(ScanFolder, TimesAreBesideTheScansOrAbove)

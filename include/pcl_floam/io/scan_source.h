@@ -1,12 +1,14 @@
 /// \file scan_source.h
-/// A folder of scans on disk: PCD files or KITTI's .bin files.
+/// Scans on disk: folders of PCD files or KITTI's .bin files, and recordings (mcap, rosbag, pcap).
 #pragma once
 
 #include <pcl/PCLPointCloud2.h>
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -15,6 +17,8 @@
 #include <vector>
 
 namespace pcl_floam {
+
+class ScanReader;
 
 /// A file could not be read or written. `what()` names the file, the place in it, and the reason.
 class FileError : public std::runtime_error {
@@ -37,39 +41,72 @@ private:
   std::filesystem::path path_;
 };
 
-/// Format of a folder's scans.
-enum class ScanFormat { pcd, kitti_bin };
+/// What a source's scans are kept in.
+enum class ScanFormat { pcd, kitti_bin, mcap, rosbag1, rosbag2, pcap };
 
-/// The scans of a folder, in natural order of their names (scan2 before scan10).
+/// A topic of a recording.
+struct ScanTopic {
+  std::string name;
+  std::string type;            ///< of its messages, for example sensor_msgs/msg/PointCloud2
+  std::uint64_t messages = 0;  ///< how many
+  bool has_scans = false;      ///< it can be given to a ScanSource
+};
+
+/// The scans of a folder or of a recording, by number.
 ///
-/// Beside the scans, or in the folder above them, a `times.txt` may give one time in seconds per scan. For a folder
-/// without scans its subfolder `velodyne` or `velodyne_points/data` is taken: a sequence of KITTI's.
+/// The input may be
+/// - a folder of `.pcd` files or of KITTI's `.bin` files, in natural order of their names (scan2 before scan10). Beside
+///   the scans, or in the folder above them, a `times.txt` may give one time in seconds per scan. For a folder without
+///   scans its subfolder `velodyne` or `velodyne_points/data` is taken: a sequence of KITTI's;
+/// - one such file;
+/// - an MCAP file, a rosbag of ROS 1, a rosbag2's folder or a `.db3` file of it, with messages of the types
+/// PointCloud2,
+///   Livox' CustomMsg, or VelodyneScan;
+/// - a pcap file with packets of a Velodyne VLP-16 or HDL-32E.
+///
+/// What it is, its first bytes tell, not its name. Formats whose library was missing when pcl_floam was built are
+/// refused with the library's name.
+///
+/// Scans are read when they are asked for; of a recording, one of its chunks and a few bytes for each scan are in
+/// memory. A place where a recording is damaged or cut off counts as a scan, which cannot be read: whoever reads all
+/// scans gets those before the damage, then the reason. A source is not for several threads at once, nor are its
+/// copies.
 class ScanSource {
 public:
-  /// Lists the folder. Reads no scan yet.
-  /// \throws FileError if the folder cannot be read, holds no `.pcd` or `.bin` file or both kinds, or if
-  ///         `times.txt` has a line that is no number or does not fit the number of scans.
-  explicit ScanSource(const std::filesystem::path& folder);
+  /// Lists the scans. Reads none yet.
+  /// \param topic of a recording with several: which; of a pcap the sender, as address:port
+  /// \throws FileError if the input cannot be read, holds no scans or several kinds of them, has several topics of
+  /// scans
+  ///         and none is named, or if `times.txt` has a line that is no number or does not fit the number of scans.
+  explicit ScanSource(const std::filesystem::path& input, const std::string& topic = "");
 
-  /// The folder that holds the scans.
+  /// The folder that holds the scans, or the recording.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  [[nodiscard]] std::size_t size() const { return files_.size(); }
-  [[nodiscard]] ScanFormat format() const { return format_; }
-  [[nodiscard]] const std::filesystem::path& path(std::size_t i) const { return files_.at(i); }
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] ScanFormat format() const;
 
-  /// Seconds, from `times.txt`; nothing without that file.
+  /// The file that holds scan \p i.
+  [[nodiscard]] const std::filesystem::path& path(std::size_t i) const;
+
+  /// What to call scan \p i in a message: its file's name, and its number in that file if there are several.
+  [[nodiscard]] std::string name(std::size_t i) const;
+
+  /// Seconds: from `times.txt`, nothing without that file; or the stamp of the recorded message, which is read for it.
+  /// \throws FileError as \ref read.
   [[nodiscard]] std::optional<double> stamp(std::size_t i) const;
 
   /// Reads scan \p i with all its fields; KITTI's have x, y, z and intensity.
-  /// \throws FileError if the file is missing, truncated or no such file.
+  /// \throws FileError if the file is missing, truncated, damaged or no such file.
   void read(std::size_t i, pcl::PCLPointCloud2& cloud) const;
 
 private:
+  std::shared_ptr<ScanReader> reader_;
   std::filesystem::path folder_;
-  std::vector<std::filesystem::path> files_;
-  std::vector<double> stamps_;
-  ScanFormat format_ = ScanFormat::pcd;
 };
+
+/// The topics of a recording, with those that hold no scans; none for a folder of scans.
+/// \throws FileError as ScanSource.
+[[nodiscard]] std::vector<ScanTopic> listTopics(const std::filesystem::path& input);
 
 /// Reads one PCD file (ascii, binary, binary_compressed) with all its fields but 64-bit integers, for which PCL has no
 /// name before 1.14; their bytes stay in the points. What follows the declared number of points is ignored.

@@ -1,0 +1,238 @@
+#include "io/velodyne/velodyne_packets.h"
+
+#include "io/messages/scan_messages.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr std::uint16_t kBlockFlag = 0xEEFF;
+constexpr std::uint16_t kLowerBlockFlag = 0xDDFF;  ///< HDL-64: lasers 32 to 63
+constexpr std::size_t kReturns = 32;               ///< of a block
+constexpr double kDistanceUnit = 0.002;            ///< m
+constexpr int kHundredths = 36000;                 ///< of a degree in a turn
+
+/// How a model fires.
+struct Firing {
+  std::size_t lasers;
+  double laser_period;   ///< s from laser to laser
+  double firing_period;  ///< s from all lasers to all lasers again
+};
+
+constexpr Firing kVlp16{16, 2.304e-6, 55.296e-6};
+constexpr Firing kHdl32{32, 1.152e-6, 46.08e-6};
+
+constexpr const Firing& firingOf(VelodyneModel model)
+{
+  return model == VelodyneModel::vlp16 ? kVlp16 : kHdl32;
+}
+
+/// A laser's place.
+struct Laser {
+  double elevation = 0.0;  ///< rad
+  double height = 0.0;     ///< m; where it leaves, above the sensor's middle
+  std::uint16_t ring = 0;
+};
+
+std::array<Laser, 16> vlp16Lasers()
+{
+  constexpr std::array<double, 16> kDegrees{-15, 1, -13, 3, -11, 5, -9, 7, -7, 9, -5, 11, -3, 13, -1, 15};
+  constexpr std::array<double, 16> kMillimetres{11.2, -0.7, 9.7, -2.2, 8.1, -3.7, 6.6, -5.1,
+                                                5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
+  std::array<Laser, 16> lasers;
+  for (std::size_t i = 0; i < lasers.size(); ++i) {
+    lasers[i] = {kDegrees[i] * M_PI / 180.0, 1e-3 * kMillimetres[i],
+                 static_cast<std::uint16_t>(std::lround((kDegrees[i] + 15.0) / 2.0))};
+  }
+  return lasers;
+}
+
+std::array<Laser, 32> hdl32Lasers()
+{
+  // Lasers fire alternately from the lower and the upper half, 4/3 degrees apart in each.
+  std::array<Laser, 32> lasers;
+  constexpr double kLowest = -92.0 / 3.0;  // degrees
+  for (std::size_t i = 0; i < lasers.size(); ++i) {
+    const std::size_t ring = i / 2 + (i % 2 == 0 ? 0 : 16);
+    lasers[i] = {(kLowest + 4.0 / 3.0 * static_cast<double>(ring)) * M_PI / 180.0, 0.0,
+                 static_cast<std::uint16_t>(ring)};
+  }
+  return lasers;
+}
+
+const Laser& laserOf(VelodyneModel model, std::size_t i)
+{
+  static const std::array<Laser, 16> vlp16 = vlp16Lasers();
+  static const std::array<Laser, 32> hdl32 = hdl32Lasers();
+  return model == VelodyneModel::vlp16 ? vlp16[i % vlp16.size()] : hdl32[i];
+}
+
+/// Cosine and sine of a hundredth of a degree.
+struct Direction {
+  float cosine;
+  float sine;
+};
+
+const std::vector<Direction>& directions()
+{
+  static const std::vector<Direction> table = [] {
+    std::vector<Direction> all;
+    for (int i = 0; i < kHundredths; ++i) {
+      const double angle = i * M_PI / (0.5 * kHundredths);
+      all.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
+    }
+    return all;
+  }();
+  return table;
+}
+
+/// Hundredths of a degree from one block to a later one.
+int turned(const VelodynePacket& packet, std::size_t from, std::size_t to)
+{
+  return (packet.azimuth(to) - packet.azimuth(from) + kHundredths) % kHundredths;
+}
+
+struct CloudPoint {
+  float x, y, z, intensity, time;
+  std::uint16_t ring;
+};
+
+constexpr std::uint32_t kPointBytes = 22;
+
+}  // namespace
+
+bool isVelodynePacket(std::string_view bytes, std::string& problem)
+{
+  if (bytes.size() != kVelodynePacketBytes) {
+    return false;
+  }
+  const VelodynePacket packet(bytes);
+  bool lower = false;
+  for (std::size_t block = 0; block < kVelodyneBlocks; ++block) {
+    lower |= packet.flag(block) == kLowerBlockFlag;
+    if (packet.flag(block) != kBlockFlag && packet.flag(block) != kLowerBlockFlag) {
+      return false;
+    }
+  }
+  problem = lower ? "is of a Velodyne HDL-64, whose points need its sensor's own calibration: not read; convert it to "
+                    "point clouds with its driver"
+                  : "";
+  return true;
+}
+
+void VelodyneModelFinder::add(const VelodynePacket& packet)
+{
+  constexpr std::size_t kEnough = 256;
+  product_ = packet.product();
+  if (last_ && packet.microseconds() > *last_ && durations_.size() < kEnough) {
+    durations_.push_back((packet.microseconds() - *last_) * (packet.isDual() ? 2U : 1U));
+  }
+  last_ = packet.microseconds();
+}
+
+std::optional<VelodyneModel> VelodyneModelFinder::model() const
+{
+  constexpr std::size_t kFew = 8;
+  if (durations_.size() < kFew) {
+    return std::nullopt;
+  }
+  // Lost packets make some longer: the median is that of the model.
+  std::vector<std::uint32_t> sorted = durations_;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+  const std::uint32_t median = sorted[sorted.size() / 2];
+  constexpr std::uint32_t kBetweenModels = 900;  // us; the models take 1327 and 553
+  return median > kBetweenModels ? VelodyneModel::vlp16 : VelodyneModel::hdl32e;
+}
+
+std::string VelodyneModelFinder::problem() const
+{
+  constexpr std::uint8_t kVlp32 = 0x28;
+  constexpr std::uint8_t kVls128 = 0xA1;
+  if (product_ == kVlp32 || product_ == kVls128) {
+    return std::string("is of a Velodyne ") + (product_ == kVlp32 ? "VLP-32C" : "VLS-128") +
+           ", which is not read: convert it to point clouds with its driver";
+  }
+  return "";
+}
+
+VelodyneCloudBuilder::VelodyneCloudBuilder(VelodyneModel model, double time_origin, pcl::PCLPointCloud2& cloud)
+    : model_(model), time_origin_(time_origin), cloud_(cloud)
+{
+  using pcl::PCLPointField;
+  cloud.fields.clear();
+  cloud.data.clear();
+  cloud.point_step = 0;
+  for (const char* name : {"x", "y", "z", "intensity", "time"}) {
+    addField(cloud, name, PCLPointField::FLOAT32, sizeof(float));
+  }
+  addField(cloud, "ring", PCLPointField::UINT16, sizeof(std::uint16_t));
+}
+
+void VelodyneCloudBuilder::add(const VelodyneBlocks& blocks)
+{
+  const VelodynePacket packet(blocks.packet);
+  const std::uint32_t microseconds = packet.microseconds();
+  first_microseconds_ = first_microseconds_.value_or(microseconds);
+  const std::int64_t since = (static_cast<std::int64_t>(microseconds) - *first_microseconds_ +
+                              static_cast<std::int64_t>(kMicrosecondsPerHour)) %
+                             static_cast<std::int64_t>(kMicrosecondsPerHour);
+  const Firing& firing = firingOf(model_);
+  const double block_period = firing.firing_period * static_cast<double>(kReturns / firing.lasers);
+  const std::size_t step = packet.isDual() ? 2 : 1;
+  const int turn = turned(packet, 0, kVelodyneBlocks - step);
+  const double steps = static_cast<double>(kVelodyneBlocks / step - 1);
+  constexpr int kFastest = 1500;  // a packet turns less, at 20 turns a second: else blocks are missing
+  if (turn > 0 && turn < kFastest) {
+    degrees_per_second_ = 0.01 * turn / (steps * block_period);
+  }
+  // Of each pair of blocks with two returns, the first holds the last return.
+  for (std::size_t block = blocks.begin - blocks.begin % step; block < blocks.end; block += step) {
+    const double time =
+        time_origin_ + 1e-6 * static_cast<double>(since) + static_cast<double>(block / step) * block_period;
+    addBlock(packet, block, time, degrees_per_second_);
+  }
+}
+
+void VelodyneCloudBuilder::addBlock(const VelodynePacket& packet, std::size_t block, double time, double turn)
+{
+  const Firing& firing = firingOf(model_);
+  if (packet.azimuth(block) >= kHundredths) {
+    return;
+  }
+  for (std::size_t i = 0; i < kReturns; ++i) {
+    if (packet.distance(block, i) == 0) {
+      continue;
+    }
+    const Laser& laser = laserOf(model_, i);
+    const double delay = static_cast<double>(i / firing.lasers) * firing.firing_period +
+                         static_cast<double>(i % firing.lasers) * firing.laser_period;
+    const long azimuth = packet.azimuth(block) + std::lround(100.0 * turn * delay);
+    const Direction& direction = directions()[static_cast<std::size_t>(azimuth % kHundredths)];
+    const double range = kDistanceUnit * packet.distance(block, i);
+    const auto flat = static_cast<float>(range * std::cos(laser.elevation));
+    // Velodyne's azimuth turns clockwise from its forward axis.
+    const CloudPoint point{flat * direction.cosine,
+                           -flat * direction.sine,
+                           static_cast<float>(range * std::sin(laser.elevation) + laser.height),
+                           static_cast<float>(packet.reflectivity(block, i)),
+                           static_cast<float>(time + delay),
+                           laser.ring};
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&point);
+    cloud_.data.insert(cloud_.data.end(), bytes, bytes + kPointBytes);
+  }
+}
+
+void VelodyneCloudBuilder::finish()
+{
+  cloud_.height = 1;
+  cloud_.width = static_cast<std::uint32_t>(cloud_.data.size() / kPointBytes);
+  cloud_.row_step = cloud_.width * kPointBytes;
+  cloud_.is_bigendian = 0;
+  cloud_.is_dense = 1;
+}
+
+}  // namespace pcl_floam
