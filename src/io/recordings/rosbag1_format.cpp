@@ -200,8 +200,8 @@ private:
         sink_.message(message.id, message.time, position);
         break;
       }
-      case kChunk:
-      case kChunkInfo: break;
+      case kChunkInfo: ++infos_; break;
+      case kChunk: break;
       default: origin.fail(0, "a record of kind " + std::to_string(opcode) + " is unknown: the file is damaged");
     }
   }
@@ -215,9 +215,10 @@ private:
                                         "the bag has no index: its recording was not finished, and what followed, if "
                                         "anything, is missing");
     }
-    if (bag_.chunks != chunks_) {
-      throw FileError(file_.path(), end + "the bag has " + std::to_string(chunks_) + " chunks, but tells " +
-                                        std::to_string(bag_.chunks) + ": it is damaged");
+    if (bag_.chunks != chunks_ || bag_.chunks != infos_) {
+      throw FileError(file_.path(), end + "the bag has " + std::to_string(chunks_) + " chunks and an index of " +
+                                        std::to_string(infos_) + ", but should have " + std::to_string(bag_.chunks) +
+                                        ": it was cut off or is damaged");
     }
   }
 
@@ -225,6 +226,7 @@ private:
   RecordSink& sink_;
   BagHeader bag_;
   std::uint32_t chunks_ = 0;
+  std::uint32_t infos_ = 0;  ///< of chunks, at the bag's end
 };
 
 }  // namespace
