@@ -11,6 +11,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
     "libpcl-dev (>= 1.12), libeigen3-dev (>= 3.3), libflann-dev, liblz4-dev, libceres-dev")
 get_target_property(libraries pcl_floam_io PCL_FLOAM_RECORDING_LIBRARIES)
+list(REMOVE_ITEM libraries lz4)
 foreach(library IN LISTS libraries)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", lib${library}-dev")
 endforeach()

@@ -20,5 +20,6 @@ endfunction()
 pcl_floam_add_recording_library(LZ4 lz4 lz4frame.h "recordings compressed with lz4")
 pcl_floam_add_recording_library(ZSTD zstd zstd.h "recordings compressed with zstd")
 pcl_floam_add_recording_library(BZ2 bz2 bzlib.h "recordings compressed with bz2")
+pcl_floam_add_recording_library(SQLITE sqlite3 sqlite3.h "rosbag2's .db3 files")
 # For what is linked with the library when that is static.
 set_property(TARGET pcl_floam_io PROPERTY PCL_FLOAM_RECORDING_LIBRARIES "${PCL_FLOAM_RECORDING_LIBRARIES}")

@@ -1,6 +1,7 @@
 #include "io/decompression.h"
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -245,5 +246,42 @@ void decompressZstd(std::string_view packed, const Origin& origin, std::string& 
                 end == End::packed_bytes_missing ? "the zstd frame ends too early" : "the zstd frame is damaged");
   }
 }
+
+#ifdef PCL_FLOAM_WITH_ZSTD
+void decompressZstdFile(const std::filesystem::path& packed, const std::filesystem::path& unpacked)
+{
+  errno = 0;
+  std::ifstream from(packed, std::ios::binary);
+  std::ofstream to(unpacked, std::ios::binary);
+  if (!from || !to) {
+    throw FileError::ofSystem(from ? unpacked : packed, "cannot be opened");
+  }
+  const std::unique_ptr<ZSTD_DStream, std::size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  std::string input(ZSTD_DStreamInSize(), '\0');
+  std::string output(ZSTD_DStreamOutSize(), '\0');
+  std::uint64_t position = 0;
+  // Of a file that is cut off or damaged, what could be unpacked is there: its reader tells of the end that is missing.
+  while (from.read(input.data(), static_cast<std::streamsize>(input.size())), from.gcount() > 0) {
+    ZSTD_inBuffer in{input.data(), static_cast<std::size_t>(from.gcount()), 0};
+    while (in.pos < in.size) {
+      ZSTD_outBuffer out{output.data(), output.size(), 0};
+      if (ZSTD_isError(ZSTD_decompressStream(stream.get(), &out, &in)) != 0) {
+        return;
+      }
+      to.write(output.data(), static_cast<std::streamsize>(out.pos));
+      position += out.pos;
+    }
+  }
+  to.flush();
+  if (!to) {
+    throw FileError::ofSystem(unpacked, "cannot be written after " + std::to_string(position) + " bytes");
+  }
+}
+#else
+void decompressZstdFile(const std::filesystem::path& packed, const std::filesystem::path&)
+{
+  requireLibrary(Compression::zstd, {packed, "", 0});
+}
+#endif
 
 }  // namespace pcl_floam

@@ -4,6 +4,7 @@
 
 #include "io/byte_reader.h"
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -27,5 +28,8 @@ void decompress(Compression compression, std::string_view packed, std::uint64_t 
 
 /// Unpacks a whole zstd frame of unknown size, as messages of rosbag2 are.
 void decompressZstd(std::string_view packed, const Origin& origin, std::string& content);
+
+/// Unpacks a file into another, a piece at a time. \throws FileError as the others
+void decompressZstdFile(const std::filesystem::path& packed, const std::filesystem::path& unpacked);
 
 }  // namespace pcl_floam

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -50,6 +52,12 @@ public:
 
   /// Gives up what is kept in memory of the message that was read last.
   virtual void rest() = 0;
+
+  /// Takes care of what must last as long as the recording: the folder that it was unpacked to.
+  void keep(std::shared_ptr<const void> what) { kept_ = std::move(what); }
+
+private:
+  std::shared_ptr<const void> kept_;
 };
 
 }  // namespace pcl_floam

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <map>
 
 namespace pcl_floam {
 namespace {
@@ -56,6 +57,27 @@ std::string mcap(const std::string& choices)
 std::string bag(const std::string& choices)
 {
   return "/usr/bin/python3 " + (kScripts / "write_rosbag1.py").string() + " FILE " + choices;
+}
+
+std::string rosbag2(const std::string& choices)
+{
+  return "python3 " + (kScripts / "write_rosbag2.py").string() + " FILE " + choices;
+}
+
+/// Whether a file can be cut off and changed: a rosbag2 is a folder.
+bool isOneFile(const Writer& writer)
+{
+  return writer.format != ScanFormat::rosbag2;
+}
+
+/// All that is in a folder, by name.
+std::map<std::string, std::string> contentsOf(const std::filesystem::path& folder)
+{
+  std::map<std::string, std::string> contents;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    contents[entry.path().filename().string()] = contentOf(entry.path());
+  }
+  return contents;
 }
 
 class ForeignRecordings : public ::testing::TestWithParam<Writer> {
@@ -119,6 +141,9 @@ TEST_P(ForeignRecordings, ListTheirTopics)
 
 TEST_P(ForeignRecordings, CutOffGiveWhatCameBeforeAndThenTheReason)
 {
+  if (!isOneFile(GetParam())) {
+    return;
+  }
   const std::string whole = contentOf(file);
   std::size_t before = 0;
   for (std::size_t tenth = 4; tenth < 10; ++tenth) {
@@ -136,7 +161,8 @@ TEST_P(ForeignRecordings, CutOffGiveWhatCameBeforeAndThenTheReason)
 TEST_P(ForeignRecordings, AByteChangedAnywhereChangesNoScanUnnoticed)
 {
   const std::string whole = contentOf(file);
-  if (GetParam().name == std::string("mcap_without_chunks") || GetParam().name == std::string("rosbag1_none")) {
+  if (GetParam().name == std::string("mcap_without_chunks") || GetParam().name == std::string("rosbag1_none") ||
+      !isOneFile(GetParam())) {
     return;  // they have no checksums
   }
   for (std::size_t at = 13; at < whole.size() * 8 / 10; at += whole.size() / 97) {
@@ -154,11 +180,83 @@ TEST_P(ForeignRecordings, AByteChangedAnywhereChangesNoScanUnnoticed)
   }
 }
 
+/// A rosbag2 of \p state; empty where it cannot be written.
+std::filesystem::path writeRosbag2(const TemporaryFolder& folder, const std::string& state)
+{
+  const std::filesystem::path bag = folder.path() / "bag";
+  std::string command = rosbag2(state + " 30");
+  command.replace(command.find("FILE"), 4, bag.string());
+  return std::system((command + " >/dev/null 2>&1").c_str()) == 0 ? bag : std::filesystem::path();
+}
+
+TEST(Rosbag2, ReadingARecordingThatWasKilledChangesNothing)
+{
+  const TemporaryFolder folder;
+  const auto bag = writeRosbag2(folder, "killed");
+  if (bag.empty()) {
+    GTEST_SKIP() << "SKIPPED: python3 with sqlite3 is not here";
+  }
+  std::filesystem::remove(bag / "recording_0.db3-shm");
+  const auto before = contentsOf(bag);
+  ASSERT_EQ(before.count("recording_0.db3-wal"), 1U);
+  {
+    const ScanSource scans(bag);
+    ASSERT_EQ(scans.size(), 30U);
+    expectScan(scans, 29);
+    EXPECT_EQ(ScanSource(bag / "recording_0.db3").size(), 30U);
+  }
+  EXPECT_EQ(contentsOf(bag), before);
+}
+
+TEST(Rosbag2, CutOffItGivesItsFirstScansAndThenTheReason)
+{
+  const TemporaryFolder folder;
+  const auto bag = writeRosbag2(folder, "closed");
+  if (bag.empty()) {
+    GTEST_SKIP() << "SKIPPED: python3 with sqlite3 is not here";
+  }
+  const std::string whole = contentOf(bag / "recording_0.db3");
+  const auto cut = folder.write("cut.db3", whole.substr(0, whole.size() / 2));
+  const ScanSource scans(cut);
+  ASSERT_GT(scans.size(), 5U);
+  expectScan(scans, 0);
+  expectScan(scans, 3);
+  pcl::PCLPointCloud2 cloud;
+  EXPECT_THROW(scans.read(scans.size() - 1, cloud), FileError);
+}
+
+TEST(Rosbag2, AFileThatIsNamedButNotThereIsToldInItsPlace)
+{
+  const TemporaryFolder folder;
+  const auto bag = writeRosbag2(folder, "closed");
+  if (bag.empty()) {
+    GTEST_SKIP() << "SKIPPED: python3 with sqlite3 is not here";
+  }
+  folder.write("bag/metadata.yaml",
+               "rosbag2_bagfile_information:\n  relative_file_paths:\n    - recording_0.db3\n    - "
+               "\"recording 1.db3\"\n  duration:\n    nanoseconds: 1\n");
+  const ScanSource scans(bag);
+  ASSERT_EQ(scans.size(), 31U);
+  expectScan(scans, 29);
+  pcl::PCLPointCloud2 cloud;
+  try {
+    scans.read(30, cloud);
+    FAIL();
+  } catch (const FileError& error) {
+    EXPECT_EQ(error.path().filename(), "recording 1.db3");
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ForeignRecordings,
                          ::testing::Values(Writer{"mcap_none", mcap("none chunked 30"), ScanFormat::mcap},
                                            Writer{"mcap_lz4", mcap("lz4 chunked 30"), ScanFormat::mcap},
                                            Writer{"mcap_zstd", mcap("zstd chunked 30"), ScanFormat::mcap},
                                            Writer{"mcap_without_chunks", mcap("none plain 30"), ScanFormat::mcap},
+                                           Writer{"rosbag2_closed", rosbag2("closed 30"), ScanFormat::rosbag2},
+                                           Writer{"rosbag2_killed", rosbag2("killed 30"), ScanFormat::rosbag2},
+                                           Writer{"rosbag2_packed_messages", rosbag2("message 30"),
+                                                  ScanFormat::rosbag2},
+                                           Writer{"rosbag2_packed_file", rosbag2("file 30"), ScanFormat::rosbag2},
                                            Writer{"rosbag1_none", bag("none 30"), ScanFormat::rosbag1},
                                            Writer{"rosbag1_bz2", bag("bz2 30"), ScanFormat::rosbag1},
                                            Writer{"rosbag1_lz4", bag("lz4 30"), ScanFormat::rosbag1}),
