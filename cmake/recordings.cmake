@@ -21,5 +21,6 @@ pcl_floam_add_recording_library(LZ4 lz4 lz4frame.h "recordings compressed with l
 pcl_floam_add_recording_library(ZSTD zstd zstd.h "recordings compressed with zstd")
 pcl_floam_add_recording_library(BZ2 bz2 bzlib.h "recordings compressed with bz2")
 pcl_floam_add_recording_library(SQLITE sqlite3 sqlite3.h "rosbag2's .db3 files")
+pcl_floam_add_recording_library(PCAP pcap pcap/pcap.h "captures of Velodyne packets")
 # For what is linked with the library when that is static.
 set_property(TARGET pcl_floam_io PROPERTY PCL_FLOAM_RECORDING_LIBRARIES "${PCL_FLOAM_RECORDING_LIBRARIES}")

@@ -9,6 +9,7 @@
 #include "io/recordings/sqlite_recording.h"
 #include "io/scan_reader.h"
 #include "io/temporary_place.h"
+#include "io/velodyne/pcap_scans.h"
 
 #include <system_error>
 #include <utility>
@@ -121,14 +122,22 @@ std::unique_ptr<ScanReader> openScans(const fs::path& input, const std::string& 
   if (!messages.recordings.empty()) {
     return openMessages(input, std::move(messages.recordings), messages.format, topic);
   }
+  const bool is_folder = fs::is_directory(input, error);
+  if (!is_folder && isCapture(magicOf(input))) {
+    return openCapture(input, topic);
+  }
   if (!topic.empty()) {
     throw FileError(input, "has no topics: --topic (or the argument topic) is for recordings");
   }
-  return fs::is_directory(input, error) ? openFolder(input) : openScanFile(input);
+  return is_folder ? openFolder(input) : openScanFile(input);
 }
 
 std::vector<ScanTopic> listTopics(const fs::path& input)
 {
+  std::error_code error;
+  if (!fs::is_directory(input, error) && isCapture(magicOf(input))) {
+    return sendersIn(input);
+  }
   return topicsOf(openRecordings(input).recordings);
 }
 
