@@ -25,7 +25,11 @@ GroundTruth::GroundTruth(const std::filesystem::path& file, const std::filesyste
   requireRisingStamps(trajectory, file);
   std::size_t found = 0;
   for (std::size_t i = 0; i < scans.size(); ++i) {
-    poses_[i] = poseAt(trajectory, *scans.stamp(i));
+    try {
+      poses_[i] = poseAt(trajectory, scans.stamp(i).value());
+    } catch (const FileError&) {
+      // A recording is damaged here: the run will tell.
+    }
     found += poses_[i] ? 1 : 0;
   }
   if (found == 0) {

@@ -37,7 +37,12 @@ std::string wrapped(const std::vector<std::string>& words)
 void addInputOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Scans");
-  app.add_option("SCANS", o.scans, "folder of .pcd scans, or of KITTI's .bin scans")->required()->type_name("FOLDER");
+  app.add_option("SCANS", o.scans,
+                 "folder of .pcd scans or of KITTI's .bin scans; or a recording:\n"
+                 "mcap, rosbag (1 or 2), pcap of Velodyne packets")
+      ->required()
+      ->type_name("PATH");
+  app.add_option("--topic", o.topic, "topic of the scans, where a recording has several")->type_name("NAME");
   addNumber(app, "--from", o.from, "N", "first scan to use; the folder's first is 0");
   addNumber(app, "--max-scans", o.max_scans, "N", "use at most so many scans; 0 uses all");
   app.add_option("--sensor", o.sensor, "lidar that made the scans\n" + wrapped(sensorNames()))
@@ -116,6 +121,20 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
              {"end", PoseInstant::end}},
             "instant of the sweep that the poses describe; auto is the\n"
             "middle for KITTI's .bin, whose ground truth is mid-sweep,\nand the end otherwise");
+  app.add_option("--save-scans", o.save_scans, "folder for the scans without their distortion, as PCD")
+      ->type_name("FOLDER");
+  app.add_flag("--ply", o.ply, "the path and the map as path.ply and map.ply, too");
+  CLI::Option* grid = app.add_option("--grid", o.grid,
+                                     "an occupancy grid (grid.pgm, grid.yaml) of what stands between\n"
+                                     "these heights, in the world's frame: for example -0.5,1.0")
+                          ->type_name("M,M")
+                          ->delimiter(',')
+                          ->expected(2);
+  app.add_option("--grid-cell", o.grid_cell, "edge of the grid's cells")
+      ->type_name("M")
+      ->capture_default_str()
+      ->check(positive())
+      ->needs(grid);
   addChoice(app, "--plot", o.plot, {{"svg", ".svg"}, {"png", ".png"}, {"none", ""}},
             "format of the picture of path, height and error");
 }

@@ -17,6 +17,7 @@ namespace pcl_floam::tools {
 
 struct OdometryOptions {
   std::filesystem::path scans;
+  std::string topic;  ///< of the scans in a recording; empty: there is but one
   std::filesystem::path output;
   std::filesystem::path ground_truth;  ///< empty: none
   std::filesystem::path calibration;   ///< of the ground truth; empty: it is the lidar's
@@ -28,6 +29,10 @@ struct OdometryOptions {
   std::filesystem::path map;                ///< of an earlier run, to go on in; empty: none
   bool localize = false;                    ///< leave that map as it is
   std::vector<double> initial_pose;         ///< in that map: x, y, z in m, yaw in degrees; empty: its origin
+  std::filesystem::path save_scans;         ///< folder for the undistorted scans; empty: none
+  bool ply = false;                         ///< the path and the map as PLY, too
+  std::vector<double> grid;                 ///< lowest and highest height in m of an occupancy grid; empty: none
+  double grid_cell = 0.1;                   ///< m
   std::string plot = ".svg";                ///< ending of the picture; empty: none
   bool quiet = false;
   OdometryParameters parameters;

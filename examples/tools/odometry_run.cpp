@@ -13,9 +13,14 @@ namespace {
 /// s; for time stamps when neither times.txt nor --scan-period tells: the period of most rotating lidars.
 constexpr double kUsualPeriod = 0.1;
 
-double outputStamp(const ScanSource& scans, std::size_t scan, double period)
+double outputStamp(std::optional<double> stamp, std::size_t scan, double period)
 {
-  return scans.stamp(scan).value_or(static_cast<double>(scan) * (period > 0.0 ? period : kUsualPeriod));
+  return stamp.value_or(static_cast<double>(scan) * (period > 0.0 ? period : kUsualPeriod));
+}
+
+bool isRecording(const ScanSource& scans)
+{
+  return scans.format() != ScanFormat::pcd && scans.format() != ScanFormat::kitti_bin;
 }
 
 /// Reads and tracks one scan.
@@ -28,8 +33,9 @@ public:
 
   const OdometryReport& track(std::size_t scan)
   {
-    const OdometryReport& report =
-        read(scan) ? odometry_.track(viewOf(cloud_), scans_.stamp(scan)) : odometry_.trackMissing(scans_.stamp(scan));
+    const bool is_read = read(scan);
+    takeStamp(scan);
+    const OdometryReport& report = is_read ? odometry_.track(viewOf(cloud_), stamp_) : odometry_.trackMissing(stamp_);
     result_.scans.push_back(scan);
     ++result_.states[static_cast<std::size_t>(report.state)];
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
@@ -42,10 +48,30 @@ public:
     return report;
   }
 
+  /// Of the last scan.
+  [[nodiscard]] std::optional<double> stamp() const { return stamp_; }
+  [[nodiscard]] bool isReadable() const { return readable_; }
+  [[nodiscard]] pcl::PCLPointCloud2& cloud() { return cloud_; }
+
 private:
+  /// A recording's times are known when its scans are read; none is, of one that cannot be read.
+  void takeStamp(std::size_t scan)
+  {
+    if (!readable_ && isRecording(scans_)) {
+      stamp_.reset();
+      return;
+    }
+    stamp_ = scans_.stamp(scan);
+    if (isRecording(scans_) && stamp_ && last_stamp_ && !(*stamp_ > *last_stamp_)) {
+      progress_.message(scans_.path(scan).string() + ": the time of " + scans_.name(scan) +
+                        " is not after that of the scan before");
+    }
+    last_stamp_ = stamp_ ? stamp_ : last_stamp_;
+  }
+
   void tell(std::size_t scan, const OdometryReport& report)
   {
-    const std::string file = scans_.path(scan).string();
+    const std::string file = (scans_.path(scan).parent_path() / scans_.name(scan)).string();
     if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
       progress_.message(file + ": not tracked: " + report.reason);
     } else if (!report.corrected_poses.empty()) {
@@ -64,9 +90,10 @@ private:
     readable_ = true;
     try {
       scans_.read(scan, cloud_);
+      (void)viewOf(cloud_);  // what contradicts itself cannot be tracked either
     } catch (const std::exception& error) {
       readable_ = false;
-      result_.unreadable.push_back({scans_.path(scan).filename().string(), error.what()});
+      result_.unreadable.push_back({scans_.name(scan), error.what()});
       progress_.message("cannot be read, its pose is predicted: " + std::string(error.what()));
     }
     return readable_;
@@ -78,6 +105,8 @@ private:
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
   bool readable_ = false;
+  std::optional<double> stamp_;
+  std::optional<double> last_stamp_;
 };
 
 }  // namespace
@@ -90,7 +119,7 @@ bool RunResult::isComplete() const
 ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder)
 {
   if (options.from >= scans_in_folder) {
-    throw std::invalid_argument("--from " + std::to_string(options.from) + ": the folder has only " +
+    throw std::invalid_argument("--from " + std::to_string(options.from) + ": there are only " +
                                 std::to_string(scans_in_folder) + " scans, counted from 0");
   }
   const std::size_t rest = scans_in_folder - options.from;
@@ -101,7 +130,7 @@ std::string timesProblem(const ScanSource& scans, ScanRange range)
 {
   std::size_t count = 0;
   std::string first;
-  for (std::size_t i = range.first + 1; i < range.first + range.count && scans.stamp(i); ++i) {
+  for (std::size_t i = range.first + 1; !isRecording(scans) && i < range.first + range.count && scans.stamp(i); ++i) {
     if (!(*scans.stamp(i) > *scans.stamp(i - 1))) {
       first = count++ == 0 ? scans.path(i).filename().string() : first;
     }
@@ -114,7 +143,7 @@ std::string timesProblem(const ScanSource& scans, ScanRange range)
 }
 
 RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range, ResultWriter& writer,
-                      bool quiet)
+                      const ScanSaver& saver, bool quiet)
 {
   RunResult result;
   ProgressBar progress(range.count, quiet);
@@ -127,7 +156,10 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
     const std::size_t scan = range.first + i;
     const OdometryReport& report = tracker.track(scan);
     try {
-      writer.write(scan, outputStamp(scans, scan, odometry.parameters().scan_period), report);
+      writer.write(scan, outputStamp(tracker.stamp(), scan, odometry.parameters().scan_period), report);
+      if (tracker.isReadable()) {
+        saver.save(scan, tracker.cloud(), report, odometry.parameters());
+      }
     } catch (const FileError& error) {
       result.output_problem = error.what();
       progress.message(result.output_problem);

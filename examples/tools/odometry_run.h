@@ -5,6 +5,7 @@
 #include "ground_truth.h"
 #include "odometry_options.h"
 #include "result_writer.h"
+#include "scan_saver.h"
 
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
@@ -49,14 +50,15 @@ struct ScanRange {
 /// \throws std::invalid_argument if the folder has no scan of that number.
 [[nodiscard]] ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder);
 
-/// Where `times.txt` does not rise; empty if it does. The odometry takes such scans as if no time had
-/// passed, or one period where the clock was set by a hundred periods or more.
+/// Where `times.txt` does not rise; empty if it does, or the scans are a recording's, whose times are told as they
+/// come. The odometry takes such scans as if no time had passed, or one period where the clock was set by a hundred
+/// periods or more.
 [[nodiscard]] std::string timesProblem(const ScanSource& scans, ScanRange range);
 
 /// Tracks scan after scan and writes what comes of each at once. Scans that cannot be read or tracked are told and
 /// predicted over. Ends early on Ctrl-C, or if the results cannot be written.
 [[nodiscard]] RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range,
-                                    ResultWriter& writer, bool quiet);
+                                    ResultWriter& writer, const ScanSaver& saver, bool quiet);
 
 /// The poses for which there is ground truth. The true ones are re-based: the first is the identity.
 [[nodiscard]] PosePairs pairWithTruth(const RunResult& result, const GroundTruth& truth);

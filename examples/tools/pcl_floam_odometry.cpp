@@ -1,16 +1,18 @@
-// pcl_floam_odometry: from a folder of scans to a trajectory and a map.
+// pcl_floam_odometry: from a folder of scans or a recording to a trajectory and a map.
 
 #include "accuracy.h"
 #include "command_line.h"
 #include "ground_truth.h"
 #include "interruption.h"
 #include "map_picture.h"
+#include "occupancy_grid.h"
 #include "odometry_options.h"
 #include "odometry_run.h"
 #include "run_summary.h"
 #include "trajectory_plot.h"
 
 #include <pcl_floam/io/map_io.h>
+#include <pcl_floam/io/scan_writer.h>
 
 #include <cmath>
 #include <iostream>
@@ -34,6 +36,7 @@ constexpr const char* kFooter =
     "written; 2 bad option or path; 130, 143 interrupted: the results so far are written.\n"
     "\nExamples:\n"
     "  pcl_floam_odometry scans/ -o results\n"
+    "  pcl_floam_odometry drive.mcap --topic /lidar/points -o results\n"
     "  pcl_floam_odometry 2011_09_26_drive_0001_sync/velodyne_points/data -o results --vertical-correction 0.205\n"
     "  pcl_floam_odometry more_scans/ -o more_results --map results --localize --initial-pose 3,1.5,0,90\n"
     "  pcl_floam_odometry vlp16_scans/ -o results --sensor vlp16 --ground-truth truth.tum.txt\n";
@@ -53,7 +56,8 @@ SE3 initialPose(const std::vector<double>& values)
 void refuseToWriteAmong(const ScanSource& scans, const std::filesystem::path& output)
 {
   std::error_code error;
-  if (std::filesystem::equivalent(scans.folder(), output, error)) {
+  const bool are_files = scans.format() == ScanFormat::pcd || scans.format() == ScanFormat::kitti_bin;
+  if (are_files && std::filesystem::equivalent(scans.folder(), output, error)) {
     throw FileError(output, "is the folder of the scans: the results need another");
   }
 }
@@ -61,7 +65,9 @@ void refuseToWriteAmong(const ScanSource& scans, const std::filesystem::path& ou
 /// All that a run needs, checked before it begins.
 struct Preparation {
   Preparation(const OdometryOptions& options)
-      : scans(options.scans), range(scanRange(options, scans.size())), odometry(parametersFor(options, scans.format()))
+      : scans(options.scans, options.topic),
+        range(scanRange(options, scans.size())),
+        odometry(parametersFor(options, scans.format()))
   {
     if (!options.ground_truth.empty()) {
       truth.emplace(options.ground_truth, options.calibration, scans);
@@ -70,7 +76,10 @@ struct Preparation {
       odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
                           options.localize ? MapUse::frozen : MapUse::kept_current);
     }
-    refuseToWriteAmong(scans, options.output);
+    for (const std::filesystem::path& folder : {options.output, options.save_scans}) {
+      refuseToWriteAmong(scans, folder);
+    }
+    saver = ScanSaver(options.save_scans);
     writer = std::make_unique<ResultWriter>(options.output);
   }
 
@@ -79,6 +88,7 @@ struct Preparation {
   OdometryPipeline odometry;
   std::optional<GroundTruth> truth;
   std::unique_ptr<ResultWriter> writer;
+  ScanSaver saver{""};
 };
 
 /// Runs one step that writes a result. \return whether it could
@@ -132,11 +142,31 @@ void drawMapPicture(const OdometryOptions& options, const OdometryPipeline& odom
   }
 }
 
+/// What was asked for beside the usual results. \return whether all could be written
+bool writeExtras(const OdometryOptions& options, const OdometryPipeline& odometry, const RunResult& result)
+{
+  std::vector<Eigen::Vector3d> path;
+  for (const SE3& pose : result.poses) {
+    path.push_back(pose.translation);
+  }
+  const std::vector<Eigen::Vector3d> map = mapPoints(odometry.map());
+  bool written = true;
+  if (options.ply) {
+    written &= writeResult([&] { writePly(path, options.output / "path.ply"); });
+    written &= writeResult([&] { writePly(map, options.output / "map.ply"); });
+  }
+  if (!options.grid.empty()) {
+    const GridSettings settings{options.grid[0], options.grid[1], options.grid_cell};
+    written &= writeResult([&] { writeGrid(makeGrid(map, path, settings), options.output / "grid"); });
+  }
+  return written;
+}
+
 int run(const OdometryOptions& options, Preparation& prepared)
 {
   noteInterruptions();
   const RunResult result =
-      runOdometry(prepared.odometry, prepared.scans, prepared.range, *prepared.writer, options.quiet);
+      runOdometry(prepared.odometry, prepared.scans, prepared.range, *prepared.writer, prepared.saver, options.quiet);
   const int signal = interruptedBy();
   const PosePairs pairs = prepared.truth ? pairWithTruth(result, *prepared.truth) : PosePairs();
   RunSummary summary{options, prepared.odometry, result, prepared.range.count, std::nullopt, signal};
@@ -145,6 +175,7 @@ int run(const OdometryOptions& options, Preparation& prepared)
   }
   bool written = result.output_problem.empty();
   written &= writeResult([&] { saveMap(prepared.odometry.map(), options.output); });
+  written &= writeExtras(options, prepared.odometry, result);
   written &= writeResult([&] { writeTextFile(options.output / "summary.json", toJson(summary).dump(2) + "\n"); });
   if (!options.plot.empty()) {
     drawPlot(options, prepared.odometry, result, pairs);

@@ -15,6 +15,8 @@ void fuzzKittiBin(const std::uint8_t* bytes, std::size_t size);         ///< a .
 void fuzzPoses(const std::uint8_t* bytes, std::size_t size);            ///< a trajectory, KITTI's or TUM's
 void fuzzTimes(const std::uint8_t* bytes, std::size_t size);            ///< times.txt of three scans
 void fuzzMap(const std::uint8_t* bytes, std::size_t size);              ///< both layers of a saved map
+void fuzzRecording(const std::uint8_t* bytes, std::size_t size);        ///< a bag, an mcap or a capture, and its scans
+void fuzzScanMessage(const std::uint8_t* bytes, std::size_t size);      ///< a message; the first byte tells its type
 void fuzzOdometryOptions(const std::uint8_t* bytes, std::size_t size);  ///< arguments of the tool, one a line
 
 }  // namespace pcl_floam::test

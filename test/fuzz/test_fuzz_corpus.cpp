@@ -38,8 +38,13 @@ TEST_P(FuzzCorpus, BreaksNoLaw)
 
 std::vector<Corpus> corpora()
 {
-  std::vector<Corpus> all = {
-      {"pcd", fuzzPcd}, {"kitti_bin", fuzzKittiBin}, {"poses", fuzzPoses}, {"times", fuzzTimes}, {"map", fuzzMap}};
+  std::vector<Corpus> all = {{"pcd", fuzzPcd},
+                             {"kitti_bin", fuzzKittiBin},
+                             {"poses", fuzzPoses},
+                             {"times", fuzzTimes},
+                             {"map", fuzzMap},
+                             {"recording", fuzzRecording},
+                             {"scan_message", fuzzScanMessage}};
 #ifdef PCL_FLOAM_WITH_TOOLS
   all.push_back({"odometry_options", fuzzOdometryOptions});
 #endif

@@ -79,9 +79,10 @@ struct CloudShape {
   std::string data = bytesOf(1.0F) + bytesOf(2.0F) + bytesOf(3.0F) + bytesOf(4.0F) + bytesOf(5.0F) + bytesOf(6.0F);
 };
 
-inline std::string pointCloud2(const CloudShape& shape, MessageBytes message = MessageBytes(true))
+inline std::string pointCloud2(const CloudShape& shape, MessageBytes message = MessageBytes(true),
+                               std::uint32_t seconds = 1700000000, std::uint32_t nanoseconds = 500000000)
 {
-  message.header().number(shape.height).number(shape.width).number(std::uint32_t{3});
+  message.header(seconds, nanoseconds).number(shape.height).number(shape.width).number(std::uint32_t{3});
   const std::uint32_t offsets[] = {0, 4, shape.z_offset};
   const char* names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {

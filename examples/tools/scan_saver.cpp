@@ -1,0 +1,73 @@
+#include "scan_saver.h"
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/sweep_motion.h>
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/io/scan_writer.h>
+
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+namespace pcl_floam::tools {
+
+void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters)
+{
+  const CloudView view = viewOf(cloud);
+  const SweepMotion motion(report.registration.sweep_twist, fractionOf(PoseInstant::middle),
+                           report.registration.sweep_acceleration);
+  if (motion.isStill() || parameters.compensation == CompensationMode::none) {
+    return;
+  }
+  ScanLines lines;
+  ScanTiming timing = findScanTiming(view, lines, parameters.timing_source);
+  if (!timing.valid() && parameters.timing_source != ScanTimingSource::none) {
+    findScanLines(view, parameters.sensor, parameters.scan_line_source, lines);
+    timing = findScanTiming(view, lines, parameters.timing_source);
+  }
+  if (!timing.valid()) {
+    return;
+  }
+  const SE3 reference_T_middle = motion.at(fractionOf(parameters.pose_instant)).inverse();
+  std::vector<float> moved(3 * view.size);  // the view reads what is written below
+  for (std::size_t i = 0; i < view.size; ++i) {
+    const Eigen::Vector3d point(view.x(i), view.y(i), view.z(i));
+    const Eigen::Vector3f there = ((reference_T_middle * motion.at(timing.at(view, i))) * point).cast<float>();
+    std::memcpy(&moved[3 * i], there.data(), 3 * sizeof(float));
+  }
+  for (std::size_t i = 0; i < view.size; ++i) {
+    std::uint8_t* point = cloud.data.data() + i * cloud.point_step;
+    const float* there = &moved[3 * i];
+    std::memcpy(point + view.x_offset, there, sizeof(float));
+    std::memcpy(point + view.y_offset, there + 1, sizeof(float));
+    std::memcpy(point + view.z_offset, there + 2, sizeof(float));
+  }
+}
+
+ScanSaver::ScanSaver(std::filesystem::path folder) : folder_(std::move(folder))
+{
+  std::error_code error;
+  if (!folder_.empty() && !std::filesystem::create_directories(folder_, error) && error) {
+    throw FileError(folder_, "cannot be created: " + error.message());
+  }
+}
+
+void ScanSaver::save(std::size_t scan, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
+                     const OdometryParameters& parameters) const
+{
+  if (!folder_.empty()) {
+    undistort(cloud, report, parameters);
+    writePcd(cloud, folder_ / numberedName(scan));
+  }
+}
+
+std::string numberedName(std::size_t number)
+{
+  constexpr std::size_t kDigits = 6;
+  const std::string digits = std::to_string(number);
+  return std::string(digits.size() < kDigits ? kDigits - digits.size() : 0, '0') + digits + ".pcd";
+}
+
+}  // namespace pcl_floam::tools
