@@ -1,6 +1,6 @@
-// The whole paper over a folder of scans, in a few lines.
+// The whole paper over a folder of scans or a recording (mcap, rosbag, pcap), in a few lines.
 //
-//   ./04_odometry_over_a_folder FOLDER
+//   ./04_odometry_over_a_folder FOLDER|RECORDING [TOPIC]
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 
@@ -11,14 +11,14 @@
 
 int main(int argc, char** argv)
 try {
-  const pcl_floam::ScanSource scans(argc == 2 ? argv[1] : ".");
+  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".", argc > 2 ? argv[2] : "");
   pcl_floam::OdometryPipeline odometry;  // for a known point type: pcl_floam::Odometry<PointT>
   std::vector<pcl_floam::SE3> trajectory;
   pcl::PCLPointCloud2 scan;
   for (std::size_t i = 0; i < scans.size(); ++i) {
     scans.read(i, scan);
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
-    std::cout << scans.path(i).filename().string() << ": " << toString(report.state) << ", at "
+    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
               << report.world_T_sensor.translation.transpose() << '\n';
     // After a start among traffic the poses so far may turn out to be wrong: here are those just before this one.
     const std::vector<pcl_floam::SE3>& corrected = report.corrected_poses;

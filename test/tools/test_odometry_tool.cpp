@@ -144,7 +144,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans", "--output is required"},
       {"nowhere -o result", "nowhere: no such folder"},
       {"empty -o result", "has no .pcd or .bin file"},
-      {"truth.txt -o result", "is no folder"},
+      {"truth.txt -o result", "is no scan"},
       {"scans -o truth.txt", "truth.txt"},
       {"scans -o result --speed 9", "--speed"},
       {"scans -o result --threads many", "--threads"},
