@@ -34,7 +34,7 @@ bool beginsWith(std::string_view bytes, std::string_view magic)
 /// A named file of a rosbag2 that cannot be opened: one scan that cannot be read.
 class MissingRecording : public Recording {
 public:
-  explicit MissingRecording(const FileError& reason) : reason_(reason) {}
+  explicit MissingRecording(FileError reason) : reason_(std::move(reason)) {}
   [[nodiscard]] const fs::path& path() const override { return reason_.path(); }
   [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
   void select(std::size_t) override {}

@@ -99,7 +99,8 @@ void writePcd(const pcl::PCLPointCloud2& cloud, const std::filesystem::path& fil
   for (std::size_t i = 0; i < points; ++i) {
     const std::uint8_t* point = cloud.data.data() + i * cloud.point_step;
     for (const pcl::PCLPointField& field : cloud.fields) {
-      content.append(reinterpret_cast<const char*>(point) + field.offset, pcdType(field).size * countOf(field));
+      content.append(reinterpret_cast<const char*>(point) + field.offset,
+                     static_cast<std::size_t>(pcdType(field).size) * countOf(field));
     }
   }
   writeFile(file, content);

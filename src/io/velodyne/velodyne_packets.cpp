@@ -19,12 +19,13 @@ constexpr int kHundredths = 36000;                 ///< of a degree in a turn
 /// How a model fires.
 struct Firing {
   std::size_t lasers;
-  double laser_period;   ///< s from laser to laser
-  double firing_period;  ///< s from all lasers to all lasers again
+  std::size_t per_block;  ///< how often all of them fire in a block
+  double laser_period;    ///< s from laser to laser
+  double firing_period;   ///< s from all lasers to all lasers again
 };
 
-constexpr Firing kVlp16{16, 2.304e-6, 55.296e-6};
-constexpr Firing kHdl32{32, 1.152e-6, 46.08e-6};
+constexpr Firing kVlp16{16, 2, 2.304e-6, 55.296e-6};
+constexpr Firing kHdl32{32, 1, 1.152e-6, 46.08e-6};
 
 constexpr const Firing& firingOf(VelodyneModel model)
 {
@@ -181,18 +182,18 @@ void VelodyneCloudBuilder::add(const VelodyneBlocks& blocks)
                               static_cast<std::int64_t>(kMicrosecondsPerHour)) %
                              static_cast<std::int64_t>(kMicrosecondsPerHour);
   const Firing& firing = firingOf(model_);
-  const double block_period = firing.firing_period * static_cast<double>(kReturns / firing.lasers);
+  const double block_period = firing.firing_period * static_cast<double>(firing.per_block);
   const std::size_t step = packet.isDual() ? 2 : 1;
   const int turn = turned(packet, 0, kVelodyneBlocks - step);
-  const double steps = static_cast<double>(kVelodyneBlocks / step - 1);
+  const std::size_t steps = kVelodyneBlocks / step - 1;
   constexpr int kFastest = 1500;  // a packet turns less, at 20 turns a second: else blocks are missing
   if (turn > 0 && turn < kFastest) {
-    degrees_per_second_ = 0.01 * turn / (steps * block_period);
+    degrees_per_second_ = 0.01 * turn / (static_cast<double>(steps) * block_period);
   }
   // Of each pair of blocks with two returns, the first holds the last return.
   for (std::size_t block = blocks.begin - blocks.begin % step; block < blocks.end; block += step) {
-    const double time =
-        time_origin_ + 1e-6 * static_cast<double>(since) + static_cast<double>(block / step) * block_period;
+    const std::size_t fired = block / step;
+    const double time = time_origin_ + 1e-6 * static_cast<double>(since) + static_cast<double>(fired) * block_period;
     addBlock(packet, block, time, degrees_per_second_);
   }
 }
@@ -208,7 +209,8 @@ void VelodyneCloudBuilder::addBlock(const VelodynePacket& packet, std::size_t bl
       continue;
     }
     const Laser& laser = laserOf(model_, i);
-    const double delay = static_cast<double>(i / firing.lasers) * firing.firing_period +
+    const std::size_t before = i / firing.lasers;  // firings of all lasers in this block
+    const double delay = static_cast<double>(before) * firing.firing_period +
                          static_cast<double>(i % firing.lasers) * firing.laser_period;
     const long azimuth = packet.azimuth(block) + std::lround(100.0 * turn * delay);
     const Direction& direction = directions()[static_cast<std::size_t>(azimuth % kHundredths)];
