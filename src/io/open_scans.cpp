@@ -34,16 +34,16 @@ bool beginsWith(std::string_view bytes, std::string_view magic)
 /// A named file of a rosbag2 that cannot be opened: one scan that cannot be read.
 class MissingRecording : public Recording {
 public:
-  explicit MissingRecording(FileError reason) : reason_(std::move(reason)) {}
-  [[nodiscard]] const fs::path& path() const override { return reason_.path(); }
+  explicit MissingRecording(const FileError& reason) { reason_ = reason; }
+  [[nodiscard]] const fs::path& path() const override { return reason_->path(); }
   [[nodiscard]] const std::vector<RecordedTopic>& topics() const override { return topics_; }
   void select(std::size_t) override {}
   [[nodiscard]] std::size_t size() const override { return 1; }
-  [[nodiscard]] RecordedMessage read(std::size_t) override { throw FileError(reason_); }
+  [[nodiscard]] RecordedMessage read(std::size_t) override { throw FileError(reason_.value()); }
   void rest() override {}
 
 private:
-  FileError reason_;
+  std::optional<FileError> reason_;
   std::vector<RecordedTopic> topics_;
 };
 

@@ -86,6 +86,23 @@ TEST_F(Captures, AVlp16TurnsTenAndTwentyTimesASecond)
   expectTurns(setting, 10);
 }
 
+TEST_F(Captures, EachLaserHasItsOwnTime)
+{
+  for (const bool hdl32 : {false, true}) {
+    VelodyneSetting setting;
+    setting.hdl32 = hdl32;
+    const ScanSource scans(folder.write("a.pcap", velodyneCapture(setting, 0.15)));
+    pcl::PCLPointCloud2 cloud;
+    scans.read(0, cloud);
+    const CloudView view = viewOf(cloud);
+    for (std::size_t i = 0; i < 64; ++i) {  // of the manuals: from laser to laser, and until all fire again
+      const double expected = hdl32 ? 1.152e-6 * static_cast<double>(i % 32) + (i < 32 ? 0.0 : 46.08e-6)
+                                    : 2.304e-6 * static_cast<double>(i % 16) + 55.296e-6 * std::floor(i / 16.0);
+      EXPECT_NEAR(view.time.read(view.point(i)), expected, 1e-9) << i;
+    }
+  }
+}
+
 TEST_F(Captures, TheModelIsToldByThePacketsRateNotByTheirProductByte)
 {
   VelodyneSetting setting;
