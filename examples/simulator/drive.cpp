@@ -35,13 +35,13 @@ std::vector<double> speedLimits(const PathLine& line, const DriveStyle& style, d
 }
 
 /// Station at each control's time.
-std::vector<double> stationsInTime(const std::vector<double>& limits, double first, double last)
+std::vector<double> stationsInTime(const std::vector<double>& limits, double wait, double first, double last)
 {
   std::vector<double> times{0.0};
   for (std::size_t i = 1; i < limits.size(); ++i) {
     times.push_back(times.back() + 2.0 * kStationStep / std::max(limits[i] + limits[i - 1], 1e-3));
   }
-  std::vector<double> stations;
+  std::vector<double> stations(static_cast<std::size_t>(std::lround(wait / kInterval)), first);
   std::size_t i = 0;
   for (double t = 0.0; t < times.back(); t += kInterval) {
     while (times[i + 1] <= t) {
@@ -110,7 +110,7 @@ MotionSpline drive(const PathLine& line, const DriveStyle& style, const BodyStyl
 {
   const double last = std::min(style.last_station, line.length());
   const std::vector<double> limits = speedLimits(line, style, style.first_station, last);
-  const std::vector<double> stations = roundJerks(stationsInTime(limits, style.first_station, last));
+  const std::vector<double> stations = roundJerks(stationsInTime(limits, style.wait, style.first_station, last));
   const SmoothNoise pitch(random, body.sway, 0.4, 2.0);
   const SmoothNoise roll(random, body.sway, 0.4, 2.0);
   const SmoothNoise bounce(random, body.bounce, 0.5, 2.0);

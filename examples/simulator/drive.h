@@ -18,6 +18,7 @@ struct DriveStyle {
   double left = 0.0;               ///< m, to the left of the line
   double first_station = 0.0;      ///< m along the line where the motion begins
   double last_station = 1e9;       ///< m along the line where it ends; the line's end if that comes first
+  double wait = 0.0;               ///< s, stands at the first station before it moves; with a start speed of 0 only
 };
 
 /// What the body's height and tilt do meanwhile.

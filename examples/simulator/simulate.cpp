@@ -40,12 +40,25 @@ void describe(CLI::App& app, Arguments& arguments)
       {"pcd", Format::pcd}, {"kitti", Format::kitti}, {"kitti-odometry", Format::kitti_odometry}};
   static const std::map<std::string, sim::HeadRotation> rotations{{"cw", sim::HeadRotation::clockwise},
                                                                   {"ccw", sim::HeadRotation::counterclockwise}};
+  static const std::map<std::string, sim::Family> families{
+      {"tune", sim::Family::tune}, {"report", sim::Family::report}, {"test", sim::Family::test}};
+  static const std::map<std::string, sim::Begin> begins{{"rest", sim::Begin::rest}, {"speed", sim::Begin::speed}};
   sim::SimulationOptions& options = arguments.options;
   app.add_option("world", options.world, "Where the sensor moves")->required()->check(CLI::IsMember(sim::worldNames()));
   app.add_option("-o,--output", arguments.output, "Folder to write; its scan folder must be new or empty")->required();
-  app.add_option("--sensor", options.sensor, "Sensor; default: vlp16, on roads hdl64")
+  app.add_option("--sensor", options.sensor, "Sensor; default: vlp16, in towns and on motorways hdl64")
       ->check(CLI::IsMember(sim::lidarNames()));
   app.add_option("--seed", options.seed, "Seed of world and noise")->capture_default_str();
+  app.add_option("--family", options.family,
+                 "tune, report or test: each draws its worlds from other ranges and other seeds; default: tune")
+      ->transform(CLI::CheckedTransformer(families))
+      ->type_name("TEXT:{tune,report,test}")
+      ->option_text("TEXT:{tune,report,test}");
+  app.add_option("--begin", options.begin, "open-road: from rest, or at speed from the first sweep; default: rest")
+      ->transform(CLI::CheckedTransformer(begins))
+      ->type_name("TEXT:{rest,speed}")
+      ->option_text("TEXT:{rest,speed}");
+  app.add_option("--speed", options.speed, "open-road: metres a second; default: drawn by the seed");
   app.add_option("--scans", arguments.scans, "Number of sweeps; default: to the end of the path")
       ->check(CLI::PositiveNumber);
   app.add_option("--start", options.start, "Seconds into the path where the first sweep begins")->capture_default_str();

@@ -1,7 +1,6 @@
 #include "simulation.h"
 
 #include "ray_scene.h"
-#include "world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,8 +33,14 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.path >= 1 && options.path < 1000, "the path must be from 1 to 999");
   check(!options.standing || std::isfinite(*options.standing), "the place to stand at must be finite");
   check(options.start >= 0.0, "the start must not be negative");
+  check(!options.speed || (*options.speed >= 1.0 && *options.speed <= 60.0), "the speed must be from 1 to 60 m/s");
   check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
   return options;
+}
+
+WorldOptions worldOptions(const SimulationOptions& options)
+{
+  return {options.seed, options.smooth, options.path, options.truck, options.family, options.begin, options.speed};
 }
 
 /// Other ways through a world see other noise.
@@ -77,8 +82,7 @@ struct Simulation::Firing {
 
 Simulation::Simulation(const SimulationOptions& options) : options_(checked(options))
 {
-  world_ = std::make_unique<WorldModel>(
-      makeWorld(options_.world, WorldOptions{options_.seed, options_.smooth, options_.path, options_.truck}));
+  world_ = std::make_unique<WorldModel>(makeWorld(options_.world, worldOptions(options_)));
   lidar_ = lidar(options_.sensor.empty() ? world_->world.default_sensor : options_.sensor);
   // The lasers fire at a fixed rate: a faster head has fewer columns.
   lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
@@ -199,7 +203,7 @@ Sweep Simulation::sweep(std::size_t number)
     sweep.exact_at_end.resize(all);
     sweep.moving.resize(all);
   }
-  Random random(options_.seed, sweepPurpose(options_, number));
+  Random random = randomOf(options_.family, options_.seed, sweepPurpose(options_, number));
   const SE3 end_T_world = sweep.world_T_end.inverse();
   for (int column = 0; column < lidar_.columns; ++column) {
     const double fraction = static_cast<double>(column) / lidar_.columns;

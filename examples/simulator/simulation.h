@@ -4,6 +4,7 @@
 
 #include "lidar.h"
 #include "motion_spline.h"
+#include "world.h"
 
 #include <pcl_floam/common/point_types.h>
 #include <pcl_floam/common/se3.h>
@@ -36,10 +37,13 @@ struct SimulationOptions {
   double field_of_view = 360.0;  ///< degrees about the forward direction; what lies outside is never seen
   /// rad; the beam's width. At depth edges a part of the returns then lies between the near and the far surface.
   double beam_divergence = 0.0;
-  bool smooth = false;     ///< see WorldOptions::smooth
-  int path = 1;            ///< see WorldOptions::path
-  bool truck = false;      ///< see WorldOptions::truck
-  bool organized = false;  ///< clouds of rings x columns with NaN where there is no return
+  bool smooth = false;  ///< see WorldOptions::smooth
+  int path = 1;         ///< see WorldOptions::path
+  bool truck = false;   ///< see WorldOptions::truck
+  Family family = Family::tune;
+  Begin begin = Begin::rest;    ///< see WorldOptions::begin
+  std::optional<double> speed;  ///< m/s, see WorldOptions::speed
+  bool organized = false;       ///< clouds of rings x columns with NaN where there is no return
 };
 
 /// One turn of the head.

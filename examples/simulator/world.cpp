@@ -14,7 +14,7 @@ struct Entry {
 
 constexpr Entry kWorlds[] = {{"warehouse", makeWarehouse}, {"room", makeRoom},         {"urban", makeUrban},
                              {"highway", makeHighway},     {"corridor", makeCorridor}, {"tunnel", makeTunnel},
-                             {"handheld", makeHandheld}};
+                             {"handheld", makeHandheld},   {"open-road", makeOpenRoad}};
 
 }  // namespace
 
@@ -42,10 +42,15 @@ const std::vector<std::string>& worldNames()
   return names;
 }
 
+Random randomOfWorld(const WorldOptions& options, std::uint64_t purpose)
+{
+  return randomOf(options.family, options.seed, purpose);
+}
+
 Random randomOfPath(const WorldOptions& options, const Random& world)
 {
   constexpr std::uint64_t kPathPurpose = 100;
-  return options.path == 1 ? world : Random(options.seed, kPathPurpose + static_cast<std::uint64_t>(options.path));
+  return options.path == 1 ? world : randomOfWorld(options, kPathPurpose + static_cast<std::uint64_t>(options.path));
 }
 
 void removeCollisions(World& world)

@@ -3,10 +3,12 @@
 #pragma once
 
 #include "drive.h"
+#include "family.h"
 #include "motion_spline.h"
 #include "triangle_mesh.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,12 +31,21 @@ struct World {
   double acceleration = 0.0;  ///< m/s^2, bound that the sensor's motion keeps to
 };
 
+/// How the sensor's motion begins.
+enum class Begin {
+  rest,  ///< stands, then picks up speed
+  speed  ///< at full speed from the first scan
+};
+
 /// What the user can choose about a world.
 struct WorldOptions {
   std::uint64_t seed = 1;
   bool smooth = false;  ///< corridor only: no doors, nothing that could tell how far one has come
   int path = 1;         ///< 1 is the usual way; 2, 3 ... are other ways through what stands there for the same seed
   bool truck = false;   ///< urban, highway: a lorry that drives beside the sensor and fills a third of its view
+  Family family = Family::tune;
+  Begin begin = Begin::rest;    ///< open-road only
+  std::optional<double> speed;  ///< m/s, open-road only: instead of what the generator draws
 };
 
 /// Racks with posts and uneven loads, pillars, machines, walking workers; 330 m at up to 2 m/s.
@@ -48,6 +59,10 @@ struct WorldOptions {
 
 /// A motorway with guard rails, banks, a few signs and bridges, traffic; more than 1 km at 25 m/s.
 [[nodiscard]] World makeHighway(const WorldOptions& options);
+
+/// A road through open country: rolling ground, a low rail at one side, poles, trees and a few houses, traffic; more
+/// than 900 m at about 25 m/s.
+[[nodiscard]] World makeOpenRoad(const WorldOptions& options);
 
 /// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
 [[nodiscard]] World makeCorridor(const WorldOptions& options);
@@ -64,6 +79,10 @@ struct WorldOptions {
 
 /// The names that \ref makeWorld knows.
 [[nodiscard]] const std::vector<std::string>& worldNames();
+
+/// The random numbers that a world is made of.
+/// \param purpose another one for each world
+[[nodiscard]] Random randomOfWorld(const WorldOptions& options, std::uint64_t purpose);
 
 /// The random numbers of a way through a world. The first way's are the world's own; the others leave those as they
 /// are, so that what stands is the same.

@@ -1,10 +1,9 @@
 #include "../objects.h"
 #include "../roadside.h"
 #include "../world.h"
+#include "road.h"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace pcl_floam::simulator {
 
@@ -15,6 +14,7 @@ constexpr double kFirstStation = 150.0;  // m along the road where the sensor st
 constexpr double kLastStation = 1260.0;  // m
 constexpr double kOuterLane = -7.2;      // m from the road's middle
 constexpr double kInnerLane = -3.5;      // m
+constexpr double kLorries = 0.3;         // of the vehicles
 
 /// Long bends to both sides.
 PathLine road(Random& random)
@@ -25,32 +25,6 @@ PathLine road(Random& random)
     points.emplace_back(x, bend(x) - bend(0.0));
   }
   return {points, 15.0};
-}
-
-/// Least and greatest y of a line, m.
-std::pair<double, double> extentAcross(const PathLine& line)
-{
-  std::pair<double, double> extent(line.at(0.0).y(), line.at(0.0).y());
-  for (double station = 0.0; station < line.length(); station += 10.0) {
-    const double y = line.at(station).y();
-    extent = {std::min(extent.first, y), std::max(extent.second, y)};
-  }
-  return extent;
-}
-
-PathLine reversed(const PathLine& line)
-{
-  std::vector<Eigen::Vector2d> points;
-  for (double station = line.length(); station >= 0.0; station -= 5.0) {
-    points.push_back(line.at(station));
-  }
-  return {points, 4.0};
-}
-
-SE3 besideRoad(const PathLine& line, const Terrain& terrain, double station, double left, double turn = 0.0)
-{
-  const Eigen::Vector2d place = line.at(station, left);
-  return upright(place.x(), place.y(), terrain.height(place.x(), place.y()), line.heading(station) + turn);
 }
 
 /// Rails, their posts, banks: the same all along the road but for the posts and the banks' unevenness.
@@ -94,28 +68,6 @@ void addLandmarks(TriangleMesh& mesh, Random& random, const PathLine& line, cons
   }
 }
 
-void addVehicle(World& world, Random& random, const PathLine& line, const Terrain& terrain, const DriveStyle& style)
-{
-  MovingObject vehicle{{}, drive(line, style, {0.0, 2.6, 0.0, 0.0}, terrain, random), 3.0};
-  if (random.chance(0.3)) {
-    addTruck(vehicle.shape, random, SE3());
-  } else {
-    addCar(vehicle.shape, random, SE3());
-  }
-  world.moving.push_back(vehicle);
-}
-
-/// Steady driving: no bend of the road is tight enough to slow down for.
-DriveStyle cruising(double speed, double left, double first_station)
-{
-  DriveStyle style;
-  style.speed = style.start_speed = style.end_speed = speed;
-  style.side_acceleration = 3.5;
-  style.left = left;
-  style.first_station = first_station;
-  return style;
-}
-
 /// A lorry that overtakes slowly: for half a minute it is beside the sensor.
 void addOvertakingTruck(World& world, Random& random, const PathLine& line, const Terrain& terrain, double speed)
 {
@@ -128,16 +80,17 @@ void addOvertakingTruck(World& world, Random& random, const PathLine& line, cons
 void addTraffic(World& world, Random& random, const PathLine& line, const Terrain& terrain)
 {
   for (double station = 20.0; station < 500.0; station += random.uniform(45.0, 90.0)) {
-    addVehicle(world, random, line, terrain, cruising(random.uniform(27.0, 30.0), kInnerLane, station));
+    addVehicle(world, random, line, terrain, cruising(random.uniform(27.0, 30.0), kInnerLane, station), kLorries);
   }
   for (const double ahead : {38.0, 95.0, -30.0}) {
-    addVehicle(world, random, line, terrain, cruising(kSpeed, kOuterLane, kFirstStation + ahead));
+    addVehicle(world, random, line, terrain, cruising(kSpeed, kOuterLane, kFirstStation + ahead), kLorries);
   }
   const PathLine back = reversed(line);
   for (int i = 0; i < 24; ++i) {
     const bool inner = i % 2 == 0;
     const double station = 55.0 * i + random.uniform(0.0, 40.0);
-    addVehicle(world, random, back, terrain, cruising(inner ? 30.0 : 25.0, inner ? kInnerLane : kOuterLane, station));
+    addVehicle(world, random, back, terrain, cruising(inner ? 30.0 : 25.0, inner ? kInnerLane : kOuterLane, station),
+               kLorries);
   }
 }
 
