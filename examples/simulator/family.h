@@ -24,17 +24,6 @@ struct Interval {
   [[nodiscard]] double draw(Random& random) const { return random.uniform(low, high); }
 };
 
-/// What a generator's ranges are in each family.
-template <typename Ranges>
-struct RangesByFamily {
-  Ranges tune, report, test;
-
-  [[nodiscard]] const Ranges& of(Family family) const
-  {
-    return family == Family::tune ? tune : (family == Family::report ? report : test);
-  }
-};
-
 /// The random numbers of a family for a seed and a purpose; those of \ref Family::tune are `Random(seed, purpose)`.
 [[nodiscard]] inline Random randomOf(Family family, std::uint64_t seed, std::uint64_t purpose)
 {

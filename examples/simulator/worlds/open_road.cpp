@@ -20,71 +20,48 @@ constexpr double kStanding = 0.6;        // s at rest before it moves: so long t
 constexpr double kRailAtTheLeft = 0.25;  // of the rails: beyond the lanes of the other direction
 constexpr double kSeen = 160.0;          // m to each side of the road that there is ground
 
-/// What the generator draws from.
+/// What the generator draws from; as it stands, for \ref Family::tune.
 struct OpenRoadRanges {
-  Interval rolling;     ///< m, standard deviation of the ground's height in hills
-  Interval hills;       ///< m, their wavelengths
-  Interval unevenness;  ///< m, standard deviation of the ground's height in bumps a few metres long
-  Interval bends;       ///< m, standard deviation of the road to both sides of straight
-  Interval speed;       ///< m/s
-  double rail_chance;   ///< that there is a rail
-  Interval rail;        ///< m, from the sensor's lane to the rail
-  Interval pole_gap;    ///< m along the road from pole to pole
-  Interval tree_gap;    ///< m along the road from tree to tree
-  Interval house_gap;   ///< m along the road from house to house
-  Interval pole_aside;  ///< m from the road's middle
-  Interval aside;       ///< m from the road's middle, of trees and houses
-  Interval cars;        ///< number of vehicles
-  Interval car_speed;   ///< m/s
-  double lorries;       ///< of the vehicles
+  Interval rolling{0.5, 1.5};         ///< m, standard deviation of the ground's height in hills
+  Interval hills{150.0, 500.0};       ///< m, their wavelengths
+  Interval unevenness{0.002, 0.008};  ///< m, standard deviation of the ground's height in bumps a few metres long
+  Interval bends{5.0, 25.0};          ///< m, standard deviation of the road to both sides of straight
+  Interval speed{23.0, 27.0};         ///< m/s
+  double rail_chance = 0.8;           ///< that there is a rail
+  Interval rail{8.0, 11.0};           ///< m, from the sensor's lane to the rail
+  Interval pole_gap{18.0, 40.0};      ///< m along the road from pole to pole
+  Interval tree_gap{4.0, 11.0};       ///< m along the road from tree to tree
+  Interval house_gap{30.0, 90.0};     ///< m along the road from house to house
+  Interval pole_aside{13.0, 20.0};    ///< m from the road's middle
+  Interval aside{16.0, 150.0};        ///< m from the road's middle, of trees and houses
+  Interval cars{12.0, 20.0};          ///< number of vehicles
+  Interval car_speed{21.0, 30.0};     ///< m/s
+  double lorries = 0.1;               ///< of the vehicles
 };
 
-// Motorways of different countries: 20 to 35 m/s; reflector posts 50 m apart, lines of poles 40 to 150 m.
-constexpr RangesByFamily<OpenRoadRanges> kRanges{{{0.5, 1.5},
-                                                  {150.0, 500.0},
-                                                  {0.002, 0.008},
-                                                  {5.0, 25.0},
-                                                  {23.0, 27.0},
-                                                  0.8,
-                                                  {8.0, 11.0},
-                                                  {40.0, 90.0},
-                                                  {25.0, 70.0},
-                                                  {120.0, 300.0},
-                                                  {13.0, 20.0},
-                                                  {16.0, 150.0},
-                                                  {12.0, 20.0},
-                                                  {21.0, 30.0},
-                                                  0.1},
-                                                 {{0.3, 2.5},
-                                                  {120.0, 700.0},
-                                                  {0.001, 0.012},
-                                                  {0.0, 35.0},
-                                                  {19.0, 33.0},
-                                                  0.7,
-                                                  {6.0, 14.0},
-                                                  {30.0, 130.0},
-                                                  {20.0, 110.0},
-                                                  {90.0, 500.0},
-                                                  {11.0, 25.0},
-                                                  {14.0, 150.0},
-                                                  {6.0, 26.0},
-                                                  {18.0, 34.0},
-                                                  0.2},
-                                                 {{0.4, 2.0},
-                                                  {130.0, 600.0},
-                                                  {0.002, 0.010},
-                                                  {2.0, 30.0},
-                                                  {21.0, 30.0},
-                                                  0.75,
-                                                  {7.0, 12.0},
-                                                  {35.0, 110.0},
-                                                  {22.0, 90.0},
-                                                  {100.0, 400.0},
-                                                  {12.0, 22.0},
-                                                  {15.0, 150.0},
-                                                  {9.0, 23.0},
-                                                  {20.0, 32.0},
-                                                  0.15}};
+OpenRoadRanges rangesOf(Family family)
+{
+  OpenRoadRanges ranges;
+  if (family != Family::tune) {
+    const bool report = family == Family::report;
+    ranges.rolling = report ? Interval{0.3, 2.5} : Interval{0.4, 2.0};
+    ranges.hills = report ? Interval{120.0, 700.0} : Interval{130.0, 600.0};
+    ranges.unevenness = report ? Interval{0.001, 0.012} : Interval{0.002, 0.010};
+    ranges.bends = report ? Interval{0.0, 35.0} : Interval{2.0, 30.0};
+    ranges.speed = report ? Interval{19.0, 33.0} : Interval{21.0, 30.0};
+    ranges.rail_chance = report ? 0.65 : 0.75;
+    ranges.rail = report ? Interval{6.0, 14.0} : Interval{7.0, 12.0};
+    ranges.pole_gap = report ? Interval{15.0, 70.0} : Interval{18.0, 55.0};
+    ranges.tree_gap = report ? Interval{4.0, 22.0} : Interval{4.0, 18.0};
+    ranges.house_gap = report ? Interval{30.0, 200.0} : Interval{35.0, 140.0};
+    ranges.pole_aside = report ? Interval{11.0, 25.0} : Interval{12.0, 22.0};
+    ranges.aside = report ? Interval{14.0, 150.0} : Interval{15.0, 150.0};
+    ranges.cars = report ? Interval{6.0, 26.0} : Interval{9.0, 23.0};
+    ranges.car_speed = report ? Interval{18.0, 34.0} : Interval{20.0, 32.0};
+    ranges.lorries = report ? 0.2 : 0.15;
+  }
+  return ranges;
+}
 
 /// The road's middle, about along x.
 PathLine road(Random& random, double bends)
@@ -95,6 +72,13 @@ PathLine road(Random& random, double bends)
     points.emplace_back(x, bend(x) - bend(0.0));
   }
   return {points, 15.0};
+}
+
+/// A distance from the road: more stands near it than far from it.
+double drawAside(Random& random, const Interval& aside)
+{
+  const double u = random.uniform();
+  return aside.low + (aside.high - aside.low) * u * u;
 }
 
 double eitherSide(Random& random, double left)
@@ -125,12 +109,12 @@ void addCountry(TriangleMesh& mesh, Random& random, const OpenRoadRanges& ranges
     addCylinder(mesh, foot, random.uniform(0.05, 0.14), random.uniform(4.0, 9.0), 0.4, 0.8);
   }
   for (double s = tree_gap * random.uniform(); s < line.length(); s += tree_gap * random.uniform(0.3, 1.7)) {
-    addTree(mesh, random, besideRoad(line, terrain, s, eitherSide(random, ranges.aside.draw(random))));
+    addTree(mesh, random, besideRoad(line, terrain, s, eitherSide(random, drawAside(random, ranges.aside))));
   }
   for (double s = house_gap * random.uniform(); s < line.length(); s += house_gap * random.uniform(0.5, 1.5)) {
     const double width = random.uniform(8.0, 16.0);
     // At the left a facade that looks at the road begins at its far end and turns back.
-    const double left = eitherSide(random, 12.0 + ranges.aside.draw(random));
+    const double left = eitherSide(random, 12.0 + drawAside(random, ranges.aside));
     const double turn = (left > 0.0 ? M_PI : 0.0) + random.uniform(-0.6, 0.6);
     addHouse(mesh, random, besideRoad(line, terrain, s, left, turn), width);
   }
@@ -170,7 +154,7 @@ DriveStyle sensorDrive(const WorldOptions& options, double speed)
 World makeOpenRoad(const WorldOptions& options)
 {
   Random random = randomOfWorld(options, 8);
-  const OpenRoadRanges& ranges = kRanges.of(options.family);
+  const OpenRoadRanges ranges = rangesOf(options.family);
   World world;
   Terrain terrain;
   terrain.addWaves(random, ranges.rolling.draw(random), ranges.hills.low, ranges.hills.high);
