@@ -29,10 +29,14 @@ void addCar(TriangleMesh& mesh, Random& random, const SE3& world_T_car)
   const double paint = random.uniform(0.15, 0.8);
   const double length = random.uniform(3.9, 4.7);
   const double width = random.uniform(1.7, 1.9);
+  const std::size_t body = mesh.triangles.size();
   addBox(mesh, world_T_car * upright(0.0, 0.0, 0.25), {length, width, 0.3}, paint, 1.02);
   addBox(mesh, world_T_car * upright(0.0, 0.0, 0.55), {1.02 * length, 1.02 * width, 0.35}, paint, 0.95);
+  polish(mesh, body, kPaintGloss);
+  const std::size_t cabin = mesh.triangles.size();
   addBox(mesh, world_T_car * upright(-0.25, 0.0, 0.9), {0.62 * length, 0.92 * width, random.uniform(0.5, 0.65)}, 0.25,
          0.76);
+  polish(mesh, cabin, kGlassGloss);
   for (const double x : {-0.31 * length, 0.31 * length}) {
     for (const double y : {-0.46 * width, 0.46 * width}) {
       addWheel(mesh, world_T_car, x, y, 0.32);

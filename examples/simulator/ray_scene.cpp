@@ -44,7 +44,7 @@ std::array<float, 12> columnsOf(const SE3& pose)
 struct Instance {
   RTCScene shape = nullptr;
   RTCGeometry geometry = nullptr;
-  std::vector<float> reflectivity;
+  std::vector<float> reflectivity, gloss;
   Eigen::Matrix3f object_R_world = Eigen::Matrix3f::Identity();  ///< turns rays as the normals are
   bool moving = false;
 };
@@ -65,6 +65,7 @@ struct RayScene::Implementation {
     rtcSetGeometryInstancedScene(instance.geometry, instance.shape);
     rtcSetGeometryTimeStepCount(instance.geometry, time_steps);
     instance.reflectivity = mesh.reflectivity;
+    instance.gloss = mesh.gloss;
     instance.moving = time_steps > 1;
     rtcAttachGeometryByID(world, instance.geometry, static_cast<unsigned int>(instances.size()));
     instances.push_back(instance);
@@ -138,7 +139,13 @@ RayHit RayScene::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& dire
   const Instance& instance = implementation_->instances[query.hit.instID[0]];
   const Eigen::Vector3f normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
   const float cosine = std::abs(normal.dot(instance.object_R_world * direction));
-  return {query.ray.tfar, cosine, instance.reflectivity[query.hit.primID], instance.moving};
+  const float gloss = query.hit.primID < instance.gloss.size() ? instance.gloss[query.hit.primID] : 0.0F;
+  return {query.ray.tfar,
+          cosine,
+          instance.reflectivity[query.hit.primID],
+          gloss,
+          instance.object_R_world.transpose() * normal,
+          instance.moving};
 }
 
 }  // namespace pcl_floam::simulator

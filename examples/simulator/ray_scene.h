@@ -17,7 +17,9 @@ struct RayHit {
   float distance = std::numeric_limits<float>::infinity();  ///< m; infinite if it meets nothing
   float incidence_cosine = 0.0F;  ///< |cosine| of the angle between the ray and the surface's normal
   float reflectivity = 0.0F;
-  bool moving = false;  ///< the surface belongs to a moving object
+  float gloss = 0.0F;                                ///< see TriangleMesh::gloss
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< of the surface, in the world's frame; of either sign
+  bool moving = false;                               ///< the surface belongs to a moving object
 
   [[nodiscard]] bool exists() const { return distance < std::numeric_limits<float>::infinity(); }
 };

@@ -51,7 +51,7 @@ Relief facade(Random& random, const FacadeStyle& style)
       const bool window = c % 5 == 2 && r % 2 == 0 && r > 0 && r + 1 < height;
       const bool pilaster = c % 5 == 0 || c % 5 == 4;
       if (window) {
-        relief.cell(r, c) = {-style.recess, 0.25};
+        relief.cell(r, c) = {-style.recess, 0.25, kGlassGloss};
       } else if (pilaster) {
         relief.cell(r, c).depth = style.pilaster;
       }

@@ -27,72 +27,126 @@ enum class Format { pcd, kitti, kitti_odometry };
 struct Arguments {
   sim::SimulationOptions options;
   std::string output;
-  std::vector<double> gap;
-  double beam_mrad = 0.0;
+  std::vector<double> gap, mount, turned_frame;
   std::size_t scans = 0;  // 0: the whole path
   Format format = Format::pcd;
   std::string sequence = "00";  // kitti-odometry
 };
 
-void describe(CLI::App& app, Arguments& arguments)
+/// An option that takes one of a few words.
+template <typename Value>
+void addChoice(CLI::App& app, const std::string& name, Value& value, const std::map<std::string, Value>& choices,
+               const std::string& help)
 {
-  static const std::map<std::string, Format> formats{
-      {"pcd", Format::pcd}, {"kitti", Format::kitti}, {"kitti-odometry", Format::kitti_odometry}};
-  static const std::map<std::string, sim::HeadRotation> rotations{{"cw", sim::HeadRotation::clockwise},
-                                                                  {"ccw", sim::HeadRotation::counterclockwise}};
+  std::string words;
+  for (const auto& [word, meaning] : choices) {
+    words += (words.empty() ? "TEXT:{" : ",") + word;
+  }
+  app.add_option(name, value, help)
+      ->transform(CLI::CheckedTransformer(choices))
+      ->type_name(words + "}")
+      ->option_text(words + "}");
+}
+
+void describeWorld(CLI::App& app, sim::SimulationOptions& options)
+{
   static const std::map<std::string, sim::Family> families{
       {"tune", sim::Family::tune}, {"report", sim::Family::report}, {"test", sim::Family::test}};
   static const std::map<std::string, sim::Begin> begins{{"rest", sim::Begin::rest}, {"speed", sim::Begin::speed}};
-  sim::SimulationOptions& options = arguments.options;
   app.add_option("world", options.world, "Where the sensor moves")->required()->check(CLI::IsMember(sim::worldNames()));
-  app.add_option("-o,--output", arguments.output, "Folder to write; its scan folder must be new or empty")->required();
-  app.add_option("--sensor", options.sensor, "Sensor; default: vlp16, in towns and on motorways hdl64")
-      ->check(CLI::IsMember(sim::lidarNames()));
   app.add_option("--seed", options.seed, "Seed of world and noise")->capture_default_str();
-  app.add_option("--family", options.family,
-                 "tune, report or test: each draws its worlds from other ranges and other seeds; default: tune")
-      ->transform(CLI::CheckedTransformer(families))
-      ->type_name("TEXT:{tune,report,test}")
-      ->option_text("TEXT:{tune,report,test}");
-  app.add_option("--begin", options.begin, "open-road: from rest, or at speed from the first sweep; default: rest")
-      ->transform(CLI::CheckedTransformer(begins))
-      ->type_name("TEXT:{rest,speed}")
-      ->option_text("TEXT:{rest,speed}");
+  addChoice(app, "--family", options.family, families,
+            "Families draw their worlds from other ranges and other seeds; default: tune");
+  app.add_option("--path", options.path, "Which way through the world; what stands is the same for the same seed")
+      ->capture_default_str();
+  addChoice(app, "--begin", options.begin, begins,
+            "open-road: from rest, or at speed from the first sweep; default: rest");
   app.add_option("--speed", options.speed, "open-road: metres a second; default: drawn by the seed");
-  app.add_option("--scans", arguments.scans, "Number of sweeps; default: to the end of the path")
-      ->check(CLI::PositiveNumber);
+  app.add_flag("--truck", options.truck, "Roads: a lorry drives beside the sensor and fills a third of its view");
+  app.add_flag("--smooth", options.smooth, "Corridor without doors");
   app.add_option("--start", options.start, "Seconds into the path where the first sweep begins")->capture_default_str();
   app.add_option("--standing", options.standing,
                  "The sensor stands, so many metres to the left of where the path is at --start");
-  app.add_option("--range-noise,--noise", options.range_noise, "Range noise, standard deviation in metres")
+  app.add_option("--rain", options.weather.rain, "mm/h")->capture_default_str();
+  app.add_option("--snow", options.weather.snow, "mm/h of water")->capture_default_str();
+  app.add_option("--dust", options.weather.dust, "Dust or fog: extinction in 1/m, three over the visibility")
       ->capture_default_str();
-  app.add_option("--dropout", options.dropout, "Fraction of the returns lost at random")->capture_default_str();
+}
+
+void describeSensor(CLI::App& app, Arguments& arguments)
+{
+  static const std::map<std::string, sim::HeadRotation> rotations{{"cw", sim::HeadRotation::clockwise},
+                                                                  {"ccw", sim::HeadRotation::counterclockwise}};
+  sim::SimulationOptions& options = arguments.options;
+  app.add_option("--sensor", options.sensor, "Sensor; default: vlp16, in towns and on motorways hdl64")
+      ->check(CLI::IsMember(sim::lidarNames()));
+  app.add_option("--rate", options.rate, "Sweeps per second")->capture_default_str();
+  addChoice(app, "--rotation", options.rotation, rotations, "Head seen from above: cw or ccw; default: cw");
   app.add_option("--field-of-view", options.field_of_view, "Degrees about the forward direction that are seen")
       ->capture_default_str();
+  app.add_option("--mount", arguments.mount,
+                 "Degrees ROLL,PITCH,YAW of the sensor on what carries it; 180,0,0: upside down")
+      ->delimiter(',')
+      ->expected(3);
+  app.add_option("--turned-frame", arguments.turned_frame,
+                 "Degrees ROLL,PITCH,YAW of the frame that points and poses are given in, against the sensor's own")
+      ->delimiter(',')
+      ->expected(3);
   app.add_option("--gap", arguments.gap, "Seconds, FROM:TO, between which nothing returns")
       ->type_name("FROM:TO")
       ->delimiter(':')
       ->expected(2);
-  app.add_option("--beam-divergence", arguments.beam_mrad,
-                 "Width of the beam in mrad (VLP-16: 3): at depth edges returns lie between near and far")
+}
+
+void describeErrors(CLI::App& app, Arguments& arguments)
+{
+  static const std::map<std::string, sim::Realism> realisms{{"ideal", sim::Realism::ideal},
+                                                            {"real", sim::Realism::real}};
+  sim::SimulationOptions& options = arguments.options;
+  app.add_option("--range-noise,--noise", options.range_noise, "Range noise, standard deviation in metres")
       ->capture_default_str();
-  app.add_option("--path", options.path, "Which way through the world; what stands is the same for the same seed")
-      ->capture_default_str();
-  app.add_flag("--truck", options.truck, "Roads: a lorry drives beside the sensor and fills a third of its view");
-  app.add_option("--rate", options.rate, "Sweeps per second")->capture_default_str();
-  app.add_option("--format", arguments.format,
-                 "pcd; kitti for .bin files ring by ring; kitti-odometry for a sequence as KITTI's odometry benchmark "
-                 "lays it out, compensated; default: pcd")
-      ->transform(CLI::CheckedTransformer(formats))
-      ->type_name("TEXT:{pcd,kitti,kitti-odometry}")
-      ->option_text("TEXT:{pcd,kitti,kitti-odometry}");
+  app.add_option("--dropout", options.dropout, "Fraction of the returns lost at random")->capture_default_str();
+  addChoice(app, "--realism", options.realism, realisms,
+            "The errors below: none, or those of the sensor's kind; each can be given as well; default: ideal");
+  for (const sim::SensorErrorOption& option : sim::sensorErrorOptions()) {
+    app.add_option_function<double>(
+        "--" + option.name, [&options, name = option.name](double value) { options.errors[name] = value; },
+        option.help);
+  }
+}
+
+void describeOutput(CLI::App& app, Arguments& arguments)
+{
+  static const std::map<std::string, Format> formats{
+      {"pcd", Format::pcd}, {"kitti", Format::kitti}, {"kitti-odometry", Format::kitti_odometry}};
+  app.add_option("-o,--output", arguments.output, "Folder to write; its scan folder must be new or empty")->required();
+  app.add_option("--scans", arguments.scans, "Number of sweeps; default: to the end of the path")
+      ->check(CLI::PositiveNumber);
+  addChoice(
+      app, "--format", arguments.format, formats,
+      "pcd; kitti for .bin files ring by ring; kitti-odometry for a sequence as KITTI's odometry benchmark lays it "
+      "out, compensated; default: pcd");
   app.add_option("--sequence", arguments.sequence, "Number of the sequence, for kitti-odometry")->capture_default_str();
-  app.add_option("--rotation", options.rotation, "Head seen from above: cw or ccw; default: cw")
-      ->transform(CLI::CheckedTransformer(rotations))
-      ->type_name("TEXT:{cw,ccw}")
-      ->option_text("TEXT:{cw,ccw}");
-  app.add_flag("--smooth", options.smooth, "Corridor without doors");
-  app.add_flag("--organized", options.organized, "PCD with one row per ring, NaN where there is no return");
+  app.add_flag("--organized", arguments.options.organized, "PCD with one row per ring, NaN where there is no return");
+}
+
+sim::RollPitchYaw inRadians(const std::vector<double>& degrees)
+{
+  constexpr double kDegree = 0.017453292519943295;  // rad
+  return degrees.empty() ? sim::RollPitchYaw()
+                         : sim::RollPitchYaw{kDegree * degrees[0], kDegree * degrees[1], kDegree * degrees[2]};
+}
+
+/// What is not in the simulation's own units on the command line.
+void convert(Arguments& arguments)
+{
+  sim::SimulationOptions& options = arguments.options;
+  options.mount = inRadians(arguments.mount);
+  options.turned_frame = inRadians(arguments.turned_frame);
+  if (arguments.gap.size() == 2) {
+    options.gap_from = arguments.gap[0];
+    options.gap_to = arguments.gap[1];
+  }
 }
 
 using SweepSink = std::function<void(const sim::Sweep&)>;
@@ -137,7 +191,10 @@ int main(int argc, char** argv)
   CLI::App app("Simulates a rotating lidar that moves through a world, and writes its sweeps and exact poses.",
                "pcl_floam_simulate");
   Arguments arguments;
-  describe(app, arguments);
+  describeWorld(app, arguments.options);
+  describeSensor(app, arguments);
+  describeErrors(app, arguments);
+  describeOutput(app, arguments);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
@@ -146,11 +203,7 @@ int main(int argc, char** argv)
     std::cerr << "pcl_floam_simulate: " << error.what() << " (see --help)\n";
     return kBadUsage;
   }
-  arguments.options.beam_divergence = 1e-3 * arguments.beam_mrad;
-  if (arguments.gap.size() == 2) {
-    arguments.options.gap_from = arguments.gap[0];
-    arguments.options.gap_to = arguments.gap[1];
-  }
+  convert(arguments);
   try {
     simulate(arguments);
   } catch (const std::invalid_argument& error) {

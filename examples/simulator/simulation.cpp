@@ -1,10 +1,12 @@
 #include "simulation.h"
 
+#include "echo.h"
 #include "ray_scene.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +16,7 @@ namespace {
 
 /// Streams of random numbers below this are the worlds' own; see Random.
 constexpr std::uint64_t kSweepPurpose = 1000000;
+constexpr std::uint64_t kUnitPurpose = 999999;
 
 void check(bool ok, const char* message)
 {
@@ -33,6 +36,10 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.path >= 1 && options.path < 1000, "the path must be from 1 to 999");
   check(!options.standing || std::isfinite(*options.standing), "the place to stand at must be finite");
   check(options.start >= 0.0, "the start must not be negative");
+  const Weather& weather = options.weather;
+  check(weather.rain >= 0.0 && weather.rain <= 200.0, "the rain must be from 0 to 200 mm/h");
+  check(weather.snow >= 0.0 && weather.snow <= 20.0, "the snow must be from 0 to 20 mm/h of water");
+  check(weather.dust >= 0.0 && weather.dust <= 1.0, "the dust's extinction must be from 0 to 1 1/m");
   check(!options.speed || (*options.speed >= 1.0 && *options.speed <= 60.0), "the speed must be from 1 to 60 m/s");
   check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
   return options;
@@ -49,6 +56,19 @@ std::uint64_t sweepPurpose(const SimulationOptions& options, std::size_t number)
   return kSweepPurpose * static_cast<std::uint64_t>(options.path) + number;
 }
 
+Eigen::Vector3d directionOf(double azimuth, double elevation)
+{
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+}
+
+void resize(Sweep& sweep, std::size_t size)
+{
+  sweep.cloud.points.resize(size);
+  sweep.exact_at_end.resize(size);
+  sweep.moving.resize(size);
+  sweep.ghost.resize(size);
+}
+
 /// Intensity as Velodyne gives it: 0 to 255.
 float intensityOf(const RayHit& hit, Random& random)
 {
@@ -57,6 +77,13 @@ float intensityOf(const RayHit& hit, Random& random)
 }
 
 }  // namespace
+
+Eigen::Matrix3d RollPitchYaw::rotation() const
+{
+  BodyState turned = BodyState::Zero();
+  turned.tail<3>() << yaw, pitch, roll;
+  return poseOf(turned).rotation;
+}
 
 struct Simulation::WorldModel {
   explicit WorldModel(World made) : world(std::move(made)), scene(world.still)
@@ -86,6 +113,13 @@ Simulation::Simulation(const SimulationOptions& options) : options_(checked(opti
   lidar_ = lidar(options_.sensor.empty() ? world_->world.default_sensor : options_.sensor);
   // The lasers fire at a fixed rate: a faster head has fewer columns.
   lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
+  GivenErrors given = options_.errors;
+  if (options_.beam_divergence > 0.0) {
+    given["beam-divergence"] = 1e3 * options_.beam_divergence;
+  }
+  unit_ = SensorUnit(sensorErrors(options_.realism, lidar_.name, given), lidar_.rings(),
+                     randomOf(options_.family, options_.seed, kUnitPurpose));
+  frame_R_sensor_ = options_.turned_frame.rotation().transpose();
   const double length = motion().duration() - options_.start;
   check(length * options_.rate >= 1.0, "the start lies beyond the end of the world's path");
   size_ = static_cast<std::size_t>(std::floor(length * options_.rate + 1e-9));
@@ -103,13 +137,20 @@ double Simulation::accelerationBound() const
   return world_->world.acceleration;
 }
 
-SE3 Simulation::worldTSensor(double t) const
+SE3 Simulation::sensorPose(double t) const
 {
+  const SE3 body_T_sensor{options_.mount.rotation(), Eigen::Vector3d::Zero()};
   if (options_.standing) {
     const SE3 world_T_path = motion().pose(options_.start);
-    return world_T_path * SE3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, *options_.standing, 0.0)};
+    return world_T_path * SE3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, *options_.standing, 0.0)} *
+           body_T_sensor;
   }
-  return motion().pose(options_.start + t);
+  return motion().pose(options_.start + t) * body_T_sensor;
+}
+
+SE3 Simulation::worldTSensor(double t) const
+{
+  return sensorPose(t) * SE3{frame_R_sensor_.transpose(), Eigen::Vector3d::Zero()};
 }
 
 void Simulation::placeMovingObjects(double start_time, double end_time)
@@ -129,59 +170,36 @@ bool Simulation::isBlind(double azimuth, double time) const
   return outside || (time >= options_.gap_from && time < options_.gap_to);
 }
 
-/// What a beam brings back. A wide beam that meets an edge lights two surfaces at once: if they are less than a pulse
-/// apart, their echoes melt into one between them.
-RayHit Simulation::echo(const Firing& firing, const Eigen::Vector3d& beam, Random& random) const
-{
-  constexpr double kPulse = 1.5;  // m, what 10 ns of light cover there and back
-  const Eigen::Vector3f origin = firing.world_T_sensor.translation.cast<float>();
-  const auto reach = static_cast<float>(lidar_.max_range);
-  const auto fraction = static_cast<float>(firing.fraction);
-  const auto cast = [&](const Eigen::Vector3d& direction) {
-    const Eigen::Vector3f world = (firing.world_T_sensor.rotation * direction).cast<float>();
-    return world_->scene.cast(origin, world, reach, fraction);
-  };
-  RayHit hit = cast(beam);
-  if (options_.beam_divergence > 0.0) {
-    const double angle = random.uniform(0.0, 2.0 * M_PI);
-    const Eigen::Vector3d side = beam.unitOrthogonal();
-    const Eigen::Vector3d off = std::cos(angle) * side + std::sin(angle) * beam.cross(side);
-    const RayHit second = cast((beam + 0.5 * options_.beam_divergence * off).normalized());
-    const double between = static_cast<double>(second.distance) - static_cast<double>(hit.distance);
-    if (hit.exists() && second.exists() && std::abs(between) < kPulse) {
-      hit.distance += static_cast<float>(random.uniform(0.0, 0.5) * between);
-    }
-  }
-  return hit;
-}
-
 void Simulation::fire(const Firing& firing, Random& random, Sweep& sweep) const
 {
-  const bool blind = isBlind(firing.azimuth, sweep.start_time + firing.time);
+  const double time = sweep.start_time + firing.time;
+  const bool blind = isBlind(firing.azimuth, time);
+  const EchoModel model(lidar_, unit_.errors(), options_.weather);
   for (int ring = 0; ring < lidar_.rings(); ++ring) {
     const double elevation = lidar_.elevations[static_cast<std::size_t>(ring)];
-    const Eigen::Vector3d beam(std::cos(elevation) * std::cos(firing.azimuth),
-                               std::cos(elevation) * std::sin(firing.azimuth), std::sin(elevation));
-    const RayHit hit = blind ? RayHit() : echo(firing, beam, random);
-    const bool seen = hit.exists() && lidar_.detects(hit, random) && !random.chance(options_.dropout);
+    const Eigen::Vector3d told = directionOf(firing.azimuth, elevation);
+    const Eigen::Vector3d beam = unit_.beam(ring, firing.azimuth, elevation);
+    const Pulse pulse{firing.world_T_sensor, beam, firing.fraction};
+    const std::optional<Echo> echo = blind ? std::nullopt : model.echo(world_->scene, pulse, random);
+    const bool seen = echo && !random.chance(options_.dropout);
     if (!seen && !options_.organized) {
       continue;
     }
-    const double exact = seen ? hit.distance : std::numeric_limits<double>::quiet_NaN();
-    const double range = exact + options_.range_noise * random.normal();
-    const Eigen::Vector3f point = (range * beam).cast<float>();
-    const float intensity = seen ? intensityOf(hit, random) : 0.0F;
+    const double exact = seen ? echo->hit.distance : std::numeric_limits<double>::quiet_NaN();
+    const double noisy = exact + options_.range_noise * random.normal();
+    const double range = seen ? unit_.measured(noisy, ring, options_.start + time, echo->hit) : noisy;
+    const Eigen::Vector3f point = (frame_R_sensor_ * (range * told)).cast<float>();
+    const float intensity = seen ? intensityOf(echo->hit, random) : 0.0F;
     const std::size_t place = options_.organized ? static_cast<std::size_t>(ring * lidar_.columns + firing.column)
                                                  : sweep.cloud.points.size();
     if (!options_.organized) {
-      sweep.cloud.points.emplace_back();
-      sweep.exact_at_end.emplace_back();
-      sweep.moving.emplace_back();
+      resize(sweep, place + 1);
     }
     sweep.cloud.points[place] = PointXYZIRT(point.x(), point.y(), point.z(), intensity,
                                             static_cast<std::uint16_t>(ring), static_cast<float>(firing.time));
     sweep.exact_at_end[place] = (firing.end_T_sensor * (exact * beam)).cast<float>();
-    sweep.moving[place] = seen && hit.moving ? 1 : 0;
+    sweep.moving[place] = seen && echo->hit.moving ? 1 : 0;
+    sweep.ghost[place] = seen && echo->ghost ? 1 : 0;
   }
 }
 
@@ -199,15 +217,15 @@ Sweep Simulation::sweep(std::size_t number)
   const auto all = static_cast<std::size_t>(lidar_.rings() * lidar_.columns);
   sweep.cloud.points.reserve(all);
   if (options_.organized) {
-    sweep.cloud.points.resize(all);
-    sweep.exact_at_end.resize(all);
-    sweep.moving.resize(all);
+    resize(sweep, all);
   }
   Random random = randomOf(options_.family, options_.seed, sweepPurpose(options_, number));
   const SE3 end_T_world = sweep.world_T_end.inverse();
   for (int column = 0; column < lidar_.columns; ++column) {
     const double fraction = static_cast<double>(column) / lidar_.columns;
-    const SE3 pose = worldTSensor(sweep.start_time + fraction * duration);
+    // Where the sensor was when it really fired; what is told is the time when it should have.
+    const double jitter = unit_.errors().time_jitter > 0.0 ? unit_.errors().time_jitter * random.normal() : 0.0;
+    const SE3 pose = sensorPose(sweep.start_time + fraction * duration + jitter);
     fire({column, lidar_.azimuth(column, options_.rotation), fraction, fraction * duration, pose, end_T_world * pose},
          random, sweep);
   }

@@ -4,6 +4,8 @@
 
 #include "lidar.h"
 #include "motion_spline.h"
+#include "sensor_errors.h"
+#include "weather.h"
 #include "world.h"
 
 #include <pcl_floam/common/point_types.h>
@@ -19,6 +21,13 @@
 #include <vector>
 
 namespace pcl_floam::simulator {
+
+/// A rotation Rz(yaw) Ry(pitch) Rx(roll); rad.
+struct RollPitchYaw {
+  double roll = 0.0, pitch = 0.0, yaw = 0.0;
+
+  [[nodiscard]] Eigen::Matrix3d rotation() const;
+};
 
 /// What is simulated. The same options give the same sweeps on every run.
 struct SimulationOptions {
@@ -37,9 +46,14 @@ struct SimulationOptions {
   double field_of_view = 360.0;  ///< degrees about the forward direction; what lies outside is never seen
   /// rad; the beam's width. At depth edges a part of the returns then lies between the near and the far surface.
   double beam_divergence = 0.0;
-  bool smooth = false;  ///< see WorldOptions::smooth
-  int path = 1;         ///< see WorldOptions::path
-  bool truck = false;   ///< see WorldOptions::truck
+  Realism realism = Realism::ideal;
+  GivenErrors errors;  ///< in place of what \ref realism says of them
+  Weather weather;
+  RollPitchYaw mount;         ///< how the sensor is mounted on what carries it: tilted, upside down
+  RollPitchYaw turned_frame;  ///< of the frame that points and poses are given in, against the sensor's own
+  bool smooth = false;        ///< see WorldOptions::smooth
+  int path = 1;               ///< see WorldOptions::path
+  bool truck = false;         ///< see WorldOptions::truck
   Family family = Family::tune;
   Begin begin = Begin::rest;    ///< see WorldOptions::begin
   std::optional<double> speed;  ///< m/s, see WorldOptions::speed
@@ -59,6 +73,8 @@ struct Sweep {
   std::vector<Eigen::Vector3f> exact_at_end;
   /// For each point of \ref cloud: 1 if it lies on a moving object.
   std::vector<std::uint8_t> moving;
+  /// For each point of \ref cloud: 1 if no surface is there: mirror images, rain, snow, dust.
+  std::vector<std::uint8_t> ghost;
   SE3 world_T_start, world_T_middle, world_T_end;  ///< the sensor's exact poses
 };
 
@@ -81,7 +97,10 @@ public:
   /// Simulates sweep \p number.
   [[nodiscard]] Sweep sweep(std::size_t number);
 
-  /// The sensor's exact pose \p t seconds after the start of sweep 0.
+  /// The errors that the sensor has.
+  [[nodiscard]] const SensorErrors& errors() const { return unit_.errors(); }
+
+  /// The exact pose \p t seconds after the start of sweep 0 of the frame that points are given in.
   [[nodiscard]] SE3 worldTSensor(double t) const;
 
   /// The sensor's motion; sweep 0 begins \ref startTime seconds into it.
@@ -98,11 +117,13 @@ private:
   void placeMovingObjects(double start_time, double end_time);
   void fire(const Firing& firing, Random& random, Sweep& sweep) const;
   [[nodiscard]] bool isBlind(double azimuth, double time) const;
-  [[nodiscard]] RayHit echo(const Firing& firing, const Eigen::Vector3d& beam, Random& random) const;
+  [[nodiscard]] SE3 sensorPose(double t) const;
 
   SimulationOptions options_;
   std::unique_ptr<WorldModel> world_;
   Lidar lidar_;
+  SensorUnit unit_;
+  Eigen::Matrix3d frame_R_sensor_ = Eigen::Matrix3d::Identity();
   std::size_t size_ = 0;
 };
 

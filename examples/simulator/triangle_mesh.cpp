@@ -93,6 +93,12 @@ void addFoliage(TriangleMesh& mesh, Random& random, const SE3& world_T_crown, co
   }
 }
 
+void polish(TriangleMesh& mesh, std::size_t first, double gloss)
+{
+  mesh.gloss.resize(first, 0.0F);
+  mesh.gloss.resize(mesh.triangles.size(), static_cast<float>(gloss));
+}
+
 void addGround(TriangleMesh& mesh, const Terrain& terrain, const GroundPatch& patch,
                const std::function<double(double x, double y)>& reflectivity)
 {
@@ -130,9 +136,13 @@ void addRelief(TriangleMesh& mesh, const SE3& world_T_wall, const Relief& relief
   const std::size_t height = relief.rows.size() - 1;
   for (std::size_t r = 0; r < height; ++r) {
     for (std::size_t c = 0; c < width; ++c) {
-      const auto [depth, reflectivity] = relief.cell(r, c);
+      const auto [depth, reflectivity, gloss] = relief.cell(r, c);
+      const std::size_t face = mesh.triangles.size();
       addQuad(mesh, {point(c, depth, r), point(c + 1, depth, r), point(c + 1, depth, r + 1), point(c, depth, r + 1)},
               reflectivity);
+      if (gloss > 0.0) {
+        polish(mesh, face, gloss);
+      }
       const double right = c + 1 < width ? relief.cell(r, c + 1).depth : depth;
       if (right != depth) {
         addQuad(

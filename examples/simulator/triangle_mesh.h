@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -20,6 +21,7 @@ struct TriangleMesh {
   std::vector<std::array<float, 3>> vertices;           ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< places in \ref vertices
   std::vector<float> reflectivity;                      ///< one per triangle
+  std::vector<float> gloss;  ///< by triangle, the part of the light that is mirrored or let through; 0 beyond its end
 };
 
 /// The pose of something that stands upright.
@@ -45,6 +47,12 @@ void addCylinder(TriangleMesh& mesh, const SE3& world_T_cylinder, double radius,
 void addFoliage(TriangleMesh& mesh, Random& random, const SE3& world_T_crown, const Eigen::Vector3d& radii, double leaf,
                 int count, double reflectivity);
 
+constexpr double kGlassGloss = 0.9;  ///< of window panes: what is scattered comes from dirt and frames
+constexpr double kPaintGloss = 0.5;  ///< of cars' paint, under its clear coat
+
+/// Makes the triangles from number \p first on glossy, as glass and paint are.
+void polish(TriangleMesh& mesh, std::size_t first, double gloss);
+
 /// A rectangle of ground and the resolution of its mesh, m.
 struct GroundPatch {
   double min_x, max_x, min_y, max_y, step;
@@ -59,6 +67,7 @@ void addGround(TriangleMesh& mesh, const Terrain& terrain, const GroundPatch& pa
 struct ReliefCell {
   double depth = 0.0;  ///< m, towards the viewer
   double reflectivity = 0.4;
+  double gloss = 0.0;  ///< see TriangleMesh::gloss
 };
 
 /// A wall whose parts lie at different depths: windows, doors, pilasters.

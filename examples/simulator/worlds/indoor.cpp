@@ -30,7 +30,7 @@ Relief roomWall(Random& random, double length, double height)
       relief.cell(row, first).depth = pillar ? 0.15 : 0.0;
       relief.cell(row, first + 4).depth = pillar ? 0.15 : 0.0;
     }
-    relief.cell(2, first + 2) = window ? ReliefCell{-0.18, 0.35} : ReliefCell{0.0, 0.6};
+    relief.cell(2, first + 2) = window ? ReliefCell{-0.18, 0.35, kGlassGloss} : ReliefCell{0.0, 0.6};
     if (i == door) {
       for (std::size_t row = 0; row < 3; ++row) {
         relief.cell(row, first + 2) = {-0.1, 0.5};
