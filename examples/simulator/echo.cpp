@@ -9,7 +9,8 @@ namespace {
 constexpr double kPulse = 1.5;            // m, what 10 ns of light cover there and back
 constexpr double kPaneReflection = 0.08;  // of light that meets a pane head-on: 4 % at each of its two faces
 constexpr float kDrop = 0.3F;             // reflectivity of drops, flakes and dust as seen
-constexpr float kOff = 1e-3F;             // m in front of a mirror that its image is looked for from
+constexpr float kOff = 1e-3F;             // m from a pane that the light is followed from
+constexpr float kPaint = 0.9F;            // gloss up to which a surface is paint, which lets nothing through
 
 RayHit cast(const RayScene& scene, const Pulse& pulse, const Eigen::Vector3d& beam, double reach)
 {
@@ -39,17 +40,16 @@ RayHit EchoModel::footprint(const RayScene& scene, const Pulse& pulse, Random& r
   const Eigen::Vector3d side = pulse.beam.unitOrthogonal();
   const Eigen::Vector3d off = std::cos(angle) * side + std::sin(angle) * pulse.beam.cross(side);
   double sum = 0.0;
-  int count = 0;
   for (const double half : {-0.5, 0.5}) {
     const Eigen::Vector3d beam = (pulse.beam + half * errors_.beam_divergence * off).normalized();
     const RayHit other = cast(scene, pulse, beam, lidar_.max_range);
     const double between = static_cast<double>(other.distance) - static_cast<double>(hit.distance);
     if (hit.exists() && other.exists() && std::abs(between) < kPulse) {
       sum += between;
-      ++count;
     }
   }
-  hit.distance += count > 0 ? static_cast<float>(share * sum / count) : 0.0F;
+  // The middle of the beam has at least half of its light.
+  hit.distance += static_cast<float>(0.25 * share * sum);
   return hit;
 }
 
@@ -63,20 +63,37 @@ bool EchoModel::detects(RayHit& hit, double share, Random& random) const
   return lidar_.detects(hit, random);
 }
 
-std::optional<RayHit> EchoModel::mirrorImage(const RayScene& scene, const Pulse& pulse, const RayHit& mirror,
-                                             Random& random) const
+std::optional<RayHit> EchoModel::follow(const RayScene& scene, const Pulse& pulse, const Surface& surface,
+                                        const Eigen::Vector3f& direction, double share, Random& random) const
 {
-  const Eigen::Vector3f in = (pulse.world_T_sensor.rotation * pulse.beam).cast<float>();
-  const Eigen::Vector3f out = in - 2.0F * in.dot(mirror.normal) * mirror.normal;
-  const Eigen::Vector3f place = pulse.world_T_sensor.translation.cast<float>() + (mirror.distance - kOff) * in;
-  RayHit image = scene.cast(place, out.normalized(), static_cast<float>(lidar_.max_range) - mirror.distance,
-                            static_cast<float>(pulse.fraction));
-  if (!image.exists()) {
+  const auto reach = static_cast<float>(lidar_.max_range) - surface.distance - kOff;
+  RayHit hit = scene.cast(surface.place + kOff * direction, direction, reach, static_cast<float>(pulse.fraction));
+  if (!hit.exists()) {
     return std::nullopt;
   }
-  image.distance += mirror.distance;
-  const double reflection = static_cast<double>(mirror.gloss) * paneReflection(mirror.incidence_cosine);
-  return detects(image, reflection * reflection, random) ? std::optional<RayHit>(image) : std::nullopt;
+  hit.distance += surface.distance + kOff;
+  // The light passes the surface on its way there and back.
+  return detects(hit, share * share * (1.0 - static_cast<double>(hit.gloss)), random) ? std::optional<RayHit>(hit)
+                                                                                      : std::nullopt;
+}
+
+std::optional<Echo> EchoModel::echoByGloss(const RayScene& scene, const Pulse& pulse, const RayHit& hit,
+                                           Random& random) const
+{
+  const Eigen::Vector3f in = (pulse.world_T_sensor.rotation * pulse.beam).cast<float>();
+  const Surface surface{pulse.world_T_sensor.translation.cast<float>() + hit.distance * in, hit.distance};
+  const double gloss = errors_.glass * static_cast<double>(hit.gloss);
+  const double mirrored = paneReflection(static_cast<double>(hit.incidence_cosine));
+  if (hit.gloss > kPaint) {
+    if (const auto behind = follow(scene, pulse, surface, in, gloss * (1.0 - mirrored), random)) {
+      return Echo{*behind, false};
+    }
+  }
+  const Eigen::Vector3f out = (in - 2.0F * in.dot(hit.normal) * hit.normal).normalized();
+  if (const auto image = follow(scene, pulse, surface, out, gloss * mirrored, random)) {
+    return Echo{*image, true};
+  }
+  return std::nullopt;
 }
 
 std::optional<Echo> EchoModel::echo(const RayScene& scene, const Pulse& pulse, Random& random) const
@@ -92,17 +109,12 @@ std::optional<Echo> EchoModel::echo(const RayScene& scene, const Pulse& pulse, R
   if (!hit.exists()) {
     return std::nullopt;
   }
-  const RayHit mirror = hit;
+  const RayHit glossy = hit;
   const double gloss = errors_.glass * static_cast<double>(hit.gloss);
   if (detects(hit, 1.0 - gloss, random)) {
     return Echo{hit, false};
   }
-  if (gloss > 0.0) {
-    if (const auto image = mirrorImage(scene, pulse, mirror, random)) {
-      return Echo{*image, true};
-    }
-  }
-  return std::nullopt;
+  return gloss > 0.0 ? echoByGloss(scene, pulse, glossy, random) : std::nullopt;
 }
 
 }  // namespace pcl_floam::simulator

@@ -38,9 +38,17 @@ public:
   [[nodiscard]] std::optional<Echo> echo(const RayScene& scene, const Pulse& pulse, Random& random) const;
 
 private:
+  /// Where a pulse has met a glossy surface.
+  struct Surface {
+    Eigen::Vector3f place;
+    float distance;  // m, on the way so far
+  };
+
   [[nodiscard]] RayHit footprint(const RayScene& scene, const Pulse& pulse, Random& random) const;
-  [[nodiscard]] std::optional<RayHit> mirrorImage(const RayScene& scene, const Pulse& pulse, const RayHit& mirror,
-                                                  Random& random) const;
+  [[nodiscard]] std::optional<RayHit> follow(const RayScene& scene, const Pulse& pulse, const Surface& surface,
+                                             const Eigen::Vector3f& direction, double share, Random& random) const;
+  [[nodiscard]] std::optional<Echo> echoByGloss(const RayScene& scene, const Pulse& pulse, const RayHit& hit,
+                                                Random& random) const;
   [[nodiscard]] bool detects(RayHit& hit, double share, Random& random) const;
 
   Lidar lidar_;

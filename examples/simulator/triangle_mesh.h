@@ -21,7 +21,8 @@ struct TriangleMesh {
   std::vector<std::array<float, 3>> vertices;           ///< m
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< places in \ref vertices
   std::vector<float> reflectivity;                      ///< one per triangle
-  std::vector<float> gloss;  ///< by triangle, the part of the light that is mirrored or let through; 0 beyond its end
+  std::vector<float> gloss;  ///< by triangle, the part of the light that is not scattered: panes let it through and
+                             ///< mirror it, paint mirrors it; 0 beyond its end
 };
 
 /// The pose of something that stands upright.
@@ -47,8 +48,8 @@ void addCylinder(TriangleMesh& mesh, const SE3& world_T_cylinder, double radius,
 void addFoliage(TriangleMesh& mesh, Random& random, const SE3& world_T_crown, const Eigen::Vector3d& radii, double leaf,
                 int count, double reflectivity);
 
-constexpr double kGlassGloss = 0.9;  ///< of window panes: what is scattered comes from dirt and frames
-constexpr double kPaintGloss = 0.5;  ///< of cars' paint, under its clear coat
+constexpr double kGlassGloss = 0.998;  ///< of window panes: only dust on them scatters
+constexpr double kPaintGloss = 0.5;    ///< of cars' paint, under its clear coat
 
 /// Makes the triangles from number \p first on glossy, as glass and paint are.
 void polish(TriangleMesh& mesh, std::size_t first, double gloss);

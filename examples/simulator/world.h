@@ -44,8 +44,8 @@ struct WorldOptions {
   int path = 1;         ///< 1 is the usual way; 2, 3 ... are other ways through what stands there for the same seed
   bool truck = false;   ///< urban, highway: a lorry that drives beside the sensor and fills a third of its view
   Family family = Family::tune;
-  Begin begin = Begin::rest;    ///< open-road only
-  std::optional<double> speed;  ///< m/s, open-road only: instead of what the generator draws
+  Begin begin = Begin::rest;                   ///< open-road only
+  std::optional<double> speed = std::nullopt;  ///< m/s, open-road only: instead of what the generator draws
 };
 
 /// Racks with posts and uneven loads, pillars, machines, walking workers; 330 m at up to 2 m/s.

@@ -50,8 +50,13 @@ double distanceToSmoothCorridor(const Eigen::Vector3d& p)
 class EveryWorld : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Simulation, EveryWorld,
-                         testing::Values("warehouse", "room", "urban", "highway", "corridor", "tunnel", "handheld"),
-                         [](const auto& parameter) { return std::string(parameter.param); });
+                         testing::Values("warehouse", "room", "urban", "highway", "corridor", "tunnel", "handheld",
+                                         "open-road"),
+                         [](const auto& parameter) {
+                           std::string name = parameter.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 TEST_P(EveryWorld, IsTheSameForTheSameSeedInAnyOrder)
 {
