@@ -62,6 +62,12 @@ void describeWorld(CLI::App& app, sim::SimulationOptions& options)
   addChoice(app, "--begin", options.begin, begins,
             "open-road: from rest, or at speed from the first sweep; default: rest");
   app.add_option("--speed", options.speed, "open-road: metres a second; default: drawn by the seed");
+  app.add_option("--trajectory", options.trajectory.file,
+                 "town, motorway: file of KITTI's odometry benchmark with the camera's poses to move along")
+      ->check(CLI::ExistingFile);
+  app.add_option("--from", options.trajectory.from, "Metres along the trajectory where the world begins")
+      ->capture_default_str();
+  app.add_option("--length", options.trajectory.length, "Metres of the trajectory")->capture_default_str();
   app.add_flag("--truck", options.truck, "Roads: a lorry drives beside the sensor and fills a third of its view");
   app.add_flag("--smooth", options.smooth, "Corridor without doors");
   app.add_option("--start", options.start, "Seconds into the path where the first sweep begins")->capture_default_str();

@@ -47,7 +47,8 @@ SimulationOptions checked(const SimulationOptions& options)
 
 WorldOptions worldOptions(const SimulationOptions& options)
 {
-  return {options.seed, options.smooth, options.path, options.truck, options.family, options.begin, options.speed};
+  return {options.seed,   options.smooth, options.path,  options.truck,
+          options.family, options.begin,  options.speed, options.trajectory};
 }
 
 /// Other ways through a world see other noise.

@@ -57,6 +57,7 @@ struct SimulationOptions {
   Family family = Family::tune;
   Begin begin = Begin::rest;    ///< see WorldOptions::begin
   std::optional<double> speed;  ///< m/s, see WorldOptions::speed
+  TrajectoryPart trajectory;    ///< see WorldOptions::trajectory
   bool organized = false;       ///< clouds of rings x columns with NaN where there is no return
 };
 

@@ -39,7 +39,7 @@ void Terrain::addWaves(Random& random, double amplitude, double shortest, double
 
 double Terrain::height(double x, double y) const
 {
-  double sum = 0.0;
+  double sum = raster_ ? raster_->height(x, y) : 0.0;
   for (const Wave& wave : waves_) {
     sum += wave.amplitude * std::sin(wave.kx * x + wave.ky * y + wave.phase);
   }

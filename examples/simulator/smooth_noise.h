@@ -2,8 +2,11 @@
 /// Smooth random functions: of time for swaying bodies, of place for uneven ground.
 #pragma once
 
+#include "height_raster.h"
 #include "random.h"
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam::simulator {
@@ -37,9 +40,14 @@ public:
   /// \param shortest, longest  m, wavelengths
   void addWaves(Random& random, double amplitude, double shortest, double longest, int waves = 8);
 
+  /// Lays the ground on a raster instead of height 0.
+  void layOn(std::shared_ptr<const HeightRaster> raster) { raster_ = std::move(raster); }
+
   [[nodiscard]] double height(double x, double y) const;
 
 private:
+  std::shared_ptr<const HeightRaster> raster_;
+
   struct Wave {
     double kx, ky, phase, amplitude;
   };

@@ -12,9 +12,10 @@ struct Entry {
   World (*make)(const WorldOptions&);
 };
 
-constexpr Entry kWorlds[] = {{"warehouse", makeWarehouse}, {"room", makeRoom},         {"urban", makeUrban},
-                             {"highway", makeHighway},     {"corridor", makeCorridor}, {"tunnel", makeTunnel},
-                             {"handheld", makeHandheld},   {"open-road", makeOpenRoad}};
+constexpr Entry kWorlds[] = {{"warehouse", makeWarehouse}, {"room", makeRoom},          {"urban", makeUrban},
+                             {"highway", makeHighway},     {"corridor", makeCorridor},  {"tunnel", makeTunnel},
+                             {"handheld", makeHandheld},   {"open-road", makeOpenRoad}, {"town", makeTown},
+                             {"motorway", makeMotorway}};
 
 }  // namespace
 

@@ -5,6 +5,7 @@
 #include "drive.h"
 #include "family.h"
 #include "motion_spline.h"
+#include "trajectory_file.h"
 #include "triangle_mesh.h"
 
 #include <cstdint>
@@ -46,6 +47,7 @@ struct WorldOptions {
   Family family = Family::tune;
   Begin begin = Begin::rest;                   ///< open-road only
   std::optional<double> speed = std::nullopt;  ///< m/s, open-road only: instead of what the generator draws
+  TrajectoryPart trajectory{};                 ///< town and motorway: the way; without a file one is drawn
 };
 
 /// Racks with posts and uneven loads, pillars, machines, walking workers; 330 m at up to 2 m/s.
@@ -63,6 +65,12 @@ struct WorldOptions {
 /// A road through open country: rolling ground, a low rail at one side, poles, trees and a few houses, traffic; more
 /// than 900 m at about 25 m/s.
 [[nodiscard]] World makeOpenRoad(const WorldOptions& options);
+
+/// A town along a trajectory: facades, trees, poles, parked and moving cars beside real motion.
+[[nodiscard]] World makeTown(const WorldOptions& options);
+
+/// A motorway along a trajectory: rails, bushes and trees, signs, traffic beside real motion.
+[[nodiscard]] World makeMotorway(const WorldOptions& options);
 
 /// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
 [[nodiscard]] World makeCorridor(const WorldOptions& options);
