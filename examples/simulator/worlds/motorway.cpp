@@ -20,9 +20,9 @@ struct MotorwayRanges {
   Interval right_rail{4.0, 7.0};  ///< m from the sensor's lane
   double right_rail_chance = 0.7;
   Interval median{1.5, 4.0};        ///< m between the two directions
-  Interval bush_gap{3.0, 10.0};     ///< m along the road
+  Interval bush_gap{2.0, 6.0};      ///< m along the road
   Interval bush_aside{9.0, 30.0};   ///< m from the sensor's lane
-  Interval tree_gap{8.0, 40.0};     ///< m
+  Interval tree_gap{5.0, 20.0};     ///< m
   Interval tree_aside{10.0, 60.0};  ///< m
   Interval sign_gap{80.0, 200.0};   ///< m
   Interval post_gap{40.0, 60.0};    ///< m
@@ -37,9 +37,9 @@ MotorwayRanges rangesOf(Family family)
     ranges.right_rail = report ? Interval{3.5, 12.0} : Interval{3.5, 9.0};
     ranges.right_rail_chance = report ? 0.5 : 0.6;
     ranges.median = report ? Interval{1.0, 14.0} : Interval{1.0, 8.0};
-    ranges.bush_gap = report ? Interval{3.0, 30.0} : Interval{3.0, 20.0};
+    ranges.bush_gap = report ? Interval{2.0, 15.0} : Interval{2.0, 10.0};
     ranges.bush_aside = report ? Interval{8.0, 50.0} : Interval{8.0, 40.0};
-    ranges.tree_gap = report ? Interval{6.0, 70.0} : Interval{7.0, 50.0};
+    ranges.tree_gap = report ? Interval{4.0, 40.0} : Interval{5.0, 30.0};
     ranges.tree_aside = report ? Interval{9.0, 90.0} : Interval{10.0, 75.0};
     ranges.sign_gap = report ? Interval{60.0, 500.0} : Interval{70.0, 350.0};
     ranges.post_gap = report ? Interval{25.0, 100.0} : Interval{33.0, 80.0};
