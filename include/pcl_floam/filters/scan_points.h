@@ -1,0 +1,48 @@
+/// \file scan_points.h
+/// The returns of one scan as registration and map take them, and a choice of them that is even in space.
+#pragma once
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/filters/scan_lines.h>
+#include <pcl_floam/filters/scan_timing.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// One return.
+struct ScanPoint {
+  float x = 0.0F;  ///< m, in the sensor's frame at the instant of its own measurement
+  float y = 0.0F;
+  float z = 0.0F;
+  float time = 0.5F;        ///< fraction of the sweep, in [0,1]
+  std::uint32_t laser = 0;  ///< number of the scan line; without scan lines a number of its own
+  std::int32_t index = -1;  ///< of the point in its cloud
+};
+
+/// All returns between two distances from the sensor, line after line; without scan lines in the cloud's order.
+/// \param[out] points overwritten; its memory is reused
+void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing, double min_range,
+                   double max_range, std::vector<ScanPoint>& points);
+
+/// Takes points evenly by space: the first one in each cube.
+class SpatialSampling {
+public:
+  /// \param side m, of the cubes
+  /// \param[out] sample overwritten; its memory is reused
+  void sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample);
+
+  /// The side of which the points fill about \p cells cubes, m; 0 without points.
+  [[nodiscard]] double sideFor(const std::vector<ScanPoint>& points, std::size_t cells);
+
+private:
+  [[nodiscard]] bool isFirst(const ScanPoint& point, float inverse_side);
+  void forget(std::size_t expected);
+
+  std::vector<std::uint64_t> table_;
+  std::uint64_t last_ = 0;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,109 @@
+#include <pcl_floam/filters/scan_points.h>
+
+#include "common/field_type.h"
+#include "filters/scan_line_finders.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pcl_floam {
+
+void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing, double min_range,
+                   double max_range, std::vector<ScanPoint>& points)
+{
+  points.clear();
+  const auto nearest = static_cast<float>(min_range * min_range);
+  const auto farthest = static_cast<float>(max_range * max_range);
+  const auto take = [&](std::size_t i, std::uint32_t laser) {
+    const float x = cloud.x(i);
+    const float y = cloud.y(i);
+    const float z = cloud.z(i);
+    const float squared = x * x + y * y + z * z;
+    if (squared >= nearest && squared <= farthest) {  // refuses NaN, too
+      const float time = timing.valid() ? timing.at(cloud, i) : 0.5F;
+      points.push_back({x, y, z, time, laser, static_cast<std::int32_t>(i)});
+    }
+  };
+  if (lines.valid()) {
+    for (std::size_t m = 0; m < lines.lines(); ++m) {
+      for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
+        take(static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]), static_cast<std::uint32_t>(m));
+      }
+    }
+    return;
+  }
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    if (isMeasurable(cloud, i)) {
+      take(i, static_cast<std::uint32_t>(i));
+    }
+  }
+}
+
+void SpatialSampling::forget(std::size_t expected)
+{
+  std::size_t slots = 1024;
+  while (slots < 4 * expected) {
+    slots *= 2;
+  }
+  if (table_.size() < slots) {
+    table_.resize(slots);
+  }
+  std::fill(table_.begin(), table_.end(), 0);
+  last_ = 0;
+}
+
+bool SpatialSampling::isFirst(const ScanPoint& point, float inverse_side)
+{
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
+  constexpr std::int64_t kOffset = 1 << 20;
+  const auto coordinate = [inverse_side](float v) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * inverse_side)) + kOffset) & 0x1FFFFFU;
+  };
+  const std::uint64_t key = (coordinate(point.x) << 42U | coordinate(point.y) << 21U | coordinate(point.z)) + 1;
+  if (key == last_) {
+    return false;
+  }
+  last_ = key;
+  std::size_t i = static_cast<std::size_t>((key * kGolden) >> 32U) & (table_.size() - 1);
+  while (table_[i] != 0) {
+    if (table_[i] == key) {
+      return false;
+    }
+    i = (i + 1) & (table_.size() - 1);
+  }
+  table_[i] = key;
+  return true;
+}
+
+void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample)
+{
+  sample.clear();
+  forget(points.size());
+  const auto inverse_side = static_cast<float>(1.0 / side);
+  for (const ScanPoint& point : points) {
+    if (isFirst(point, inverse_side)) {
+      sample.push_back(point);
+    }
+  }
+}
+
+double SpatialSampling::sideFor(const std::vector<ScanPoint>& points, std::size_t cells)
+{
+  constexpr double kSmallest = 1e-3;  // m: finer than any lidar measures
+  constexpr double kGreatest = 1e3;   // m: farther than any lidar sees
+  constexpr int kHalvings = 16;       // to a part in 5,000
+  if (points.empty()) {
+    return 0.0;
+  }
+  double small = std::log(kSmallest);
+  double great = std::log(kGreatest);
+  std::vector<ScanPoint> taken;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (small + great);
+    sample(points, std::exp(middle), taken);
+    (taken.size() > cells ? small : great) = middle;
+  }
+  return std::exp(great);
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,55 @@
+/// \file surface_fit.h
+/// The shape of a cell's points from their running sums.
+#pragma once
+
+#include <pcl_floam/map/surface.h>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+namespace pcl_floam {
+
+/// Count, sum and sum of outer products of points about a common origin, and the lasers that saw them.
+struct CellSums {
+  std::array<double, 3> sum{};
+  std::array<double, 6> outer{};  // xx xy xz yy yz zz
+  std::uint64_t lasers = 0;       // bit m mod 64: laser m
+  std::uint32_t count = 0;
+
+  void add(double x, double y, double z, std::uint32_t laser);
+};
+
+/// What the sums tell. Offsets are from the sums' origin.
+struct CellFit {
+  SurfaceKind kind = SurfaceKind::unknown;
+  std::array<float, 3> mean{};
+  std::array<float, 3> direction{};
+  float thickness = 0.0F;
+  float extent = 0.0F;
+};
+
+/// A shape that chance or the sampling pattern of a single laser would give is none.
+[[nodiscard]] CellFit fitOf(const CellSums& sums);
+
+/// A fit that is worked out when it is first asked for, by whichever thread asks.
+struct CachedFit {
+  enum State : std::uint8_t { stale, being_made, ready };
+
+  CellFit fit;
+  std::atomic<std::uint8_t> state{stale};
+
+  CachedFit() = default;
+  ~CachedFit() = default;
+  CachedFit(const CachedFit& other) : fit(other.fit), state(other.state.load()) {}
+  CachedFit& operator=(const CachedFit& other)
+  {
+    fit = other.fit;
+    state.store(other.state.load());
+    return *this;
+  }
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,95 @@
+/// \file voxel_pyramid.h
+/// A pyramid of voxels with running sums: shapes at every scale, and which lasers saw them.
+#pragma once
+
+#include "map/block_table.h"
+#include "map/chunked_pool.h"
+#include "map/surface_fit.h"
+
+#include <pcl_floam/map/surface.h>
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A return in the map: an offset from the centre of its block, and the laser that saw it.
+struct MapPoint {
+  float x = 0.0F, y = 0.0F, z = 0.0F;  // m
+  std::uint32_t laser = 0;
+};
+
+/// Cells of sides v, 2v, 4v, 8v and 16v. Those of the greatest side, the blocks, are found by a hash of 64 bits, all
+/// others from their parent: an octree of four steps in each block. Each cell keeps the sums of its points and which
+/// lasers they came from.
+class VoxelPyramid : public SurfaceSearch {
+public:
+  static constexpr int kLevels = 5;
+  static constexpr int kPointsPerLeaf = 20;
+
+  /// \param side m, of the finest cells
+  explicit VoxelPyramid(double side);
+
+  [[nodiscard]] double side() const { return side_; }
+  [[nodiscard]] std::size_t size() const { return points_; }
+  [[nodiscard]] std::size_t cells() const { return cells_.used(); }
+
+  /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
+  bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
+
+  [[nodiscard]] bool empty() const override { return points_ == 0; }
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
+
+  /// The surface at a place: of the finest cell around it whose shape several lasers support.
+  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place) const;
+
+  /// Drops the blocks whose centres are farther from \p center than \p radius.
+  void crop(const Eigen::Vector3d& center, double radius);
+
+  void clear();
+
+private:
+  struct Cell {
+    std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
+    CellSums sums;
+    mutable CachedFit fit;
+  };
+  struct Leaf {
+    std::array<MapPoint, kPointsPerLeaf> point;
+    std::uint32_t count = 0;
+  };
+  struct Block {
+    BlockKey key;
+    std::uint32_t root = 0;
+  };
+  struct Place {
+    BlockKey key;
+    Eigen::Vector3d offset;  // from the block's centre
+  };
+
+  /// The cells around a place, by level; 0 where there is none.
+  struct Path {
+    std::array<std::uint32_t, kLevels> cell{};
+  };
+
+  [[nodiscard]] Place placeOf(const Eigen::Vector3d& point) const;
+  [[nodiscard]] Eigen::Vector3d centerOf(const BlockKey& key) const;
+  [[nodiscard]] Path pathTo(const Place& place) const;
+  Path makePathTo(const Place& place);
+  static CellFit fitOf(const Cell& cell);
+  static Eigen::Vector3d nearestIn(const Leaf& leaf, const Eigen::Vector3d& offset);
+  void release(std::uint32_t cell, int level);
+  [[nodiscard]] double sideOf(int level) const { return side_ * (1 << level); }
+
+  double side_;
+  double squared_spacing_;
+  std::size_t points_ = 0;
+  ChunkedPool<Cell> cells_;
+  ChunkedPool<Leaf> leaves_;
+  BlockTable table_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,46 @@
+/// \file sweep_points.h
+/// Where the points of a moving sweep lie.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/scan_points.h>
+
+namespace pcl_floam {
+
+/// The sensor's pose in the middle of a sweep, and its motion during it: T(u) = T exp(u xi) for u in [-1/2, 1/2] (Eq. 3
+/// and 4; the paper's (N - n)/N moves the wrong end of the sweep, and of all its instants the middle is the one whose
+/// pose depends least on the motion).
+class MovingSensor {
+public:
+  explicit MovingSensor(const SE3& target_T_sensor, const Vector6& twist = Vector6::Zero())
+      : pose_(target_T_sensor), velocity_(twist.head<3>()), turn_(twist.tail<3>())
+  {
+  }
+
+  [[nodiscard]] const SE3& pose() const { return pose_; }
+
+  /// Time from the sweep's middle, in sweeps.
+  [[nodiscard]] static double sinceMiddle(const ScanPoint& point) { return static_cast<double>(point.time) - 0.5; }
+
+  /// The place of a point in the sensor's frame of mid-sweep. The exponential's series to fourth order: half a sweep at
+  /// a turn of 360 degrees a second leaves 3e-6 of the range.
+  [[nodiscard]] Eigen::Vector3d undistorted(const ScanPoint& point) const
+  {
+    const double u = sinceMiddle(point);
+    const Eigen::Vector3d p(point.x, point.y, point.z);
+    const Eigen::Vector3d first = u * (turn_.cross(p) + velocity_);
+    const Eigen::Vector3d second = (0.5 * u) * turn_.cross(first);
+    const Eigen::Vector3d third = (u / 3.0) * turn_.cross(second);
+    return p + first + second + third + (0.25 * u) * turn_.cross(third);
+  }
+
+  /// The place of a point in the target's frame.
+  [[nodiscard]] Eigen::Vector3d at(const ScanPoint& point) const { return pose_ * undistorted(point); }
+
+private:
+  SE3 pose_;
+  Eigen::Vector3d velocity_;
+  Eigen::Vector3d turn_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,188 @@
+// The pyramid of voxels: what it takes in, what it calls a shape, and what it forgets.
+#include "map/voxel_pyramid.h"
+
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <thread>
+#include <vector>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr double kSide = 0.5;  // m
+
+/// Points of the plane z = height within a square about \p center, those of one row by one laser.
+void addFloor(VoxelPyramid& map, const Eigen::Vector3d& center, double half, double step, std::uint32_t lasers)
+{
+  std::uint32_t row = 0;
+  for (double y = -half; y <= half; y += step, ++row) {
+    for (double x = -half; x <= half; x += step) {
+      map.insert(center + Eigen::Vector3d(x, y, 0.0), row % lasers);
+    }
+  }
+}
+
+}  // namespace
+
+TEST(VoxelPyramid, TakesNoPointThatIsNearerThanTheSpacing)
+{
+  VoxelPyramid map(kSide);
+  const Eigen::Vector3d place(0.25, 0.25, 0.25);
+  const double spacing = kSide / std::sqrt(20.0);
+  EXPECT_TRUE(map.insert(place, 0));
+  EXPECT_FALSE(map.insert(place + Eigen::Vector3d(0.9 * spacing, 0.0, 0.0), 1));
+  EXPECT_TRUE(map.insert(place + Eigen::Vector3d(1.1 * spacing, 0.0, 0.0), 1));
+  EXPECT_EQ(map.size(), 2U);
+}
+
+TEST(VoxelPyramid, ACellHoldsTwentyPoints)
+{
+  VoxelPyramid map(kSide);
+  std::mt19937 random(1);
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d inside(test::uniform(random, 0.24), test::uniform(random, 0.24), test::uniform(random, 0.24));
+    map.insert(Eigen::Vector3d::Constant(0.25) + inside, static_cast<std::uint32_t>(i));
+  }
+  EXPECT_EQ(map.size(), static_cast<std::size_t>(VoxelPyramid::kPointsPerLeaf));
+}
+
+TEST(VoxelPyramid, RefusesWhatIsNotFinite)
+{
+  VoxelPyramid map(kSide);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(map.insert({nan, 0.0, 0.0}, 0));
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.surfaceAt({0.0, nan, 0.0}).kind, SurfaceKind::unknown);
+}
+
+TEST(VoxelPyramid, FindsThePlaneOfAFloorWhereverItIs)
+{
+  for (const double origin : {0.0, 1e5, -1e6}) {
+    VoxelPyramid map(kSide);
+    const Eigen::Vector3d center(origin, -origin, 10.25);
+    addFloor(map, center, 3.0, 0.12, 8);
+    const Surface floor = map.surfaceAt(center + Eigen::Vector3d(0.3, 0.2, 0.05));
+    ASSERT_EQ(floor.kind, SurfaceKind::plane);
+    EXPECT_NEAR(std::abs(floor.direction.z()), 1.0, 1e-6);
+    EXPECT_NEAR(floor.center.z(), 10.25, 1e-5);
+    EXPECT_LT(floor.thickness, 1e-8);
+  }
+}
+
+TEST(VoxelPyramid, PointsOfOneLaserAreNoSurface)
+{
+  VoxelPyramid map(kSide);
+  addFloor(map, {0.0, 0.0, 0.25}, 3.0, 0.12, 1);
+  EXPECT_EQ(map.surfaceAt({0.3, 0.2, 0.25}).kind, SurfaceKind::unknown);
+}
+
+TEST(VoxelPyramid, LooksAtAWiderScaleWhereTheFinestShowsOneLaser)
+{
+  VoxelPyramid map(kSide);
+  // Rings 1.2 m apart: each fine cell sees one laser at most, wider ones several.
+  for (std::uint32_t laser = 0; laser < 6; ++laser) {
+    for (double x = -4.0; x <= 4.0; x += 0.12) {
+      map.insert({x, 1.2 * laser - 3.0, 0.25}, laser);
+    }
+  }
+  const Surface floor = map.surfaceAt({0.3, 0.6, 0.25});
+  ASSERT_EQ(floor.kind, SurfaceKind::plane);
+  EXPECT_GT(floor.size, kSide);
+  EXPECT_NEAR(std::abs(floor.direction.z()), 1.0, 1e-6);
+}
+
+TEST(VoxelPyramid, FindsALineThatThreeLasersSee)
+{
+  const auto pole = [](std::uint32_t lasers) {
+    VoxelPyramid map(kSide);
+    for (int i = 0; i < 40; ++i) {
+      map.insert({0.25, 0.25, 0.115 * i}, static_cast<std::uint32_t>(i) % lasers);
+    }
+    return map.surfaceAt({0.3, 0.25, 0.25});
+  };
+  const Surface line = pole(3);
+  ASSERT_EQ(line.kind, SurfaceKind::line);
+  EXPECT_NEAR(std::abs(line.direction.z()), 1.0, 1e-6);
+  EXPECT_NE(pole(2).kind, SurfaceKind::line);
+}
+
+TEST(VoxelPyramid, GivesTheNearestPointOfWhatIsNeitherLineNorPlane)
+{
+  VoxelPyramid map(kSide);
+  std::mt19937 random(2);
+  std::vector<Eigen::Vector3d> bush;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d inside(test::uniform(random, 0.24), test::uniform(random, 0.24), test::uniform(random, 0.24));
+    const Eigen::Vector3d place = Eigen::Vector3d::Constant(0.25) + inside;
+    if (map.insert(place, static_cast<std::uint32_t>(i))) {
+      bush.push_back(place);
+    }
+  }
+  const Eigen::Vector3d query(0.2, 0.3, 0.27);
+  double nearest = 1.0;
+  for (const Eigen::Vector3d& place : bush) {
+    nearest = std::min(nearest, (place - query).norm());
+  }
+  const Surface surface = map.surfaceAt(query);
+  ASSERT_EQ(surface.kind, SurfaceKind::point);
+  EXPECT_NEAR((surface.center - query).norm(), nearest, 1e-6);
+}
+
+TEST(VoxelPyramid, ForgetsBlocksBeyondTheHorizonAndReusesTheirRoom)
+{
+  VoxelPyramid map(kSide);
+  addFloor(map, {0.0, 0.0, 0.25}, 3.0, 0.12, 8);
+  const std::size_t near = map.size();
+  addFloor(map, {100.0, 0.0, 0.25}, 3.0, 0.12, 8);
+  map.crop({0.0, 0.0, 0.0}, 50.0);
+  EXPECT_EQ(map.size(), near);
+  EXPECT_EQ(map.surfaceAt({100.3, 0.2, 0.25}).kind, SurfaceKind::unknown);
+  EXPECT_EQ(map.surfaceAt({0.3, 0.2, 0.25}).kind, SurfaceKind::plane);
+  addFloor(map, {-40.0, 0.0, 0.25}, 3.0, 0.12, 8);
+  EXPECT_EQ(map.surfaceAt({-39.7, 0.2, 0.25}).kind, SurfaceKind::plane);
+}
+
+TEST(VoxelPyramid, ACopyGoesItsOwnWay)
+{
+  VoxelPyramid map(kSide);
+  addFloor(map, {0.0, 0.0, 0.25}, 1.0, 0.12, 8);
+  const VoxelPyramid copy = map;
+  map.clear();
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(copy.surfaceAt({0.3, 0.2, 0.25}).kind, SurfaceKind::plane);
+}
+
+TEST(VoxelPyramid, ThreadsThatAskAtOnceGetTheSame)
+{
+  VoxelPyramid map(kSide);
+  addFloor(map, {0.0, 0.0, 0.25}, 3.0, 0.12, 8);
+  const VoxelPyramid untouched = map;
+  std::vector<Eigen::Vector3d> places;
+  for (double x = -2.5; x < 2.5; x += 0.1) {
+    places.emplace_back(x, 0.3 * x, 0.25);
+  }
+  std::vector<std::vector<Surface>> found(4, std::vector<Surface>(places.size()));
+  std::vector<std::thread> threads;
+  for (auto& surfaces : found) {
+    threads.emplace_back([&] { map.find(places.data(), places.size(), surfaces.data()); });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Surface expected = untouched.surfaceAt(places[i]);
+    for (const auto& surfaces : found) {
+      EXPECT_EQ(surfaces[i].kind, expected.kind);
+      EXPECT_EQ(surfaces[i].center, expected.center);
+      EXPECT_EQ(surfaces[i].direction, expected.direction);
+    }
+  }
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,98 @@
+// The motion estimate: constant velocities, what corrections teach, and covariances.
+#include "motion/motion_estimate.h"
+
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
+
+#include <random>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr double kExact = 1e-10;  // m^2, rad^2
+
+double distance(const SE3& a, const SE3& b)
+{
+  return log(a.inverse() * b).norm();
+}
+
+/// An estimate that has seen so many poses of a constant velocity.
+MotionEstimate afterSteps(const Vector6& velocity, int steps)
+{
+  MotionEstimate motion(SE3(), Vector6::Zero());
+  for (int i = 1; i <= steps; ++i) {
+    motion.predict(1.0);
+    motion.correct(exp(i * velocity), kExact * Matrix6(Matrix6::Identity()));
+  }
+  return motion;
+}
+
+}  // namespace
+
+TEST(MotionEstimate, LearnsAConstantVelocity)
+{
+  std::mt19937 random(3);
+  for (int i = 0; i < 10; ++i) {
+    const Vector6 velocity = test::randomTwist(random, 2.0, 0.1);
+    MotionEstimate motion = afterSteps(velocity, 20);
+    motion.predict(1.0);
+    EXPECT_LT(distance(motion.pose(), exp(21.0 * velocity)), 1e-2 * velocity.norm());
+  }
+}
+
+TEST(MotionEstimate, PredictsTheSameInOneStepOrInTwo)
+{
+  std::mt19937 random(4);
+  MotionEstimate once = afterSteps(test::randomTwist(random, 1.0, 0.1), 5);
+  MotionEstimate twice = once;
+  once.predict(2.0);
+  twice.predict(1.0);
+  twice.predict(1.0);
+  EXPECT_LT(distance(once.pose(), twice.pose()), 1e-9);
+  const Matrix6 difference = once.poseCovariance() - twice.poseCovariance();
+  EXPECT_LT(difference.norm(), 0.05 * Matrix6(once.poseCovariance()).norm());
+}
+
+TEST(MotionEstimate, IsSurerAfterACorrectionAndLessSureWithTime)
+{
+  MotionEstimate motion = afterSteps(Vector6::Zero(), 10);
+  const double corrected = motion.poseCovariance().trace();
+  motion.predict(1.0);
+  const double soon = motion.poseCovariance().trace();
+  motion.predict(5.0);
+  EXPECT_LT(corrected, soon);
+  EXPECT_LT(10.0 * soon, motion.poseCovariance().trace());
+}
+
+TEST(MotionEstimate, CovarianceTurnsWithTheSensor)
+{
+  Vector6 velocity = Vector6::Zero();
+  velocity[0] = 1.0;
+  Matrix6 only_x_unsure = kExact * Matrix6(Matrix6::Identity());
+  only_x_unsure(0, 0) = 1.0;
+  MotionEstimate motion(SE3(expSO3({0.0, 0.0, 1.5707963267948966}), Eigen::Vector3d::Zero()), velocity);
+  motion.predict(1.0);
+  motion.correct(motion.pose(), only_x_unsure);
+  EXPECT_NEAR(motion.poseCovariance()(0, 0), 1.0, 1e-6);
+  EXPECT_LT(motion.poseCovariance()(1, 1), 1e-6);
+}
+
+TEST(MotionEstimate, CovariancesStayPositive)
+{
+  std::mt19937 random(5);
+  MotionEstimate motion(SE3(), Vector6::Zero());
+  for (int i = 0; i < 200; ++i) {
+    motion.predict(i % 7 == 0 ? 3.0 : 1.0);
+    const SE3 measured = motion.pose() * exp(test::randomTwist(random, 0.2, 0.02));
+    const Matrix6 half = 0.5 * Matrix6(motion.poseCovariance());
+    motion.correct(measured, half);
+    const Eigen::Matrix<double, 6, 6> covariance = motion.poseCovariance();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> eigen(covariance);
+    ASSERT_GT(eigen.eigenvalues().minCoeff(), 0.0);
+  }
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,190 @@
+// Registration of points with surfaces: known motions, sweeps, what cannot be seen, threads.
+#include "registration/surface_registration.h"
+
+#include "map/voxel_pyramid.h"
+#include "registration/sweep_points.h"
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Two walls and a floor about the origin as functions of the place: exact, with no sampling of their own.
+class Corner : public SurfaceSearch {
+public:
+  explicit Corner(int walls) : walls_(walls) {}
+
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      for (int axis = 2; axis > 2 - walls_; --axis) {
+        if (std::abs(places[i][axis] - kWall) < 1.0) {
+          surfaces[i].kind = SurfaceKind::plane;
+          surfaces[i].direction = Eigen::Vector3d::Unit(axis);
+          surfaces[i].center = places[i];
+          surfaces[i].center[axis] = kWall;
+          surfaces[i].extent = 0.1;
+          surfaces[i].count = 20;
+        }
+      }
+    }
+  }
+
+  static constexpr double kWall = -4.0;  // m, on each axis
+
+private:
+  int walls_;
+};
+
+/// Points on the three walls of a corner, seen by a sensor that moves.
+std::vector<ScanPoint> sweepOf(const MovingSensor& sensor, std::size_t count)
+{
+  std::mt19937 random(6);
+  std::vector<ScanPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d place(test::uniform(random, 2.5), test::uniform(random, 2.5), test::uniform(random, 2.5));
+    place[static_cast<int>(i % 3)] = Corner::kWall;
+    points[i].time = static_cast<float>(i) / static_cast<float>(count);
+    // What the sensor measures is the place seen from its pose of that moment.
+    const double u = MovingSensor::sinceMiddle(points[i]);
+    ScanPoint probe = points[i];
+    Eigen::Vector3d seen = sensor.pose().inverse() * place;
+    for (int iteration = 0; iteration < 20; ++iteration) {
+      probe.x = static_cast<float>(seen.x());
+      probe.y = static_cast<float>(seen.y());
+      probe.z = static_cast<float>(seen.z());
+      seen += sensor.pose().inverse() * place - sensor.undistorted(probe);
+    }
+    EXPECT_LE(std::abs(u), 0.5);
+    points[i].x = static_cast<float>(seen.x());
+    points[i].y = static_cast<float>(seen.y());
+    points[i].z = static_cast<float>(seen.z());
+  }
+  return points;
+}
+
+SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const SurfaceSearch& target)
+{
+  SurfaceProblem problem;
+  problem.points = &points;
+  problem.target = &target;
+  problem.guess_covariance = 0.1 * Matrix6(Matrix6::Identity());
+  problem.guess_is_prior = false;
+  return problem;
+}
+
+double distance(const SE3& a, const SE3& b)
+{
+  return log(a.inverse() * b).norm();
+}
+
+}  // namespace
+
+TEST(MovingSensor, IsTheExponentialOfTheTwist)
+{
+  std::mt19937 random(7);
+  for (int i = 0; i < 50; ++i) {
+    const SE3 pose = exp(test::randomTwist(random, 5.0, 2.0));
+    const Vector6 twist = test::randomTwist(random, 2.0, 0.4);
+    const MovingSensor sensor(pose, twist);
+    const ScanPoint point{static_cast<float>(test::uniform(random, 20.0)),      3.0F, -1.0F,
+                          static_cast<float>(0.5 + test::uniform(random, 0.5)), 0,    -1};
+    const SE3 at = pose * exp(MovingSensor::sinceMiddle(point) * twist);
+    const Eigen::Vector3d expected = at * Eigen::Vector3d(point.x, point.y, point.z);
+    EXPECT_LT((sensor.at(point) - expected).norm(), 2e-4);
+  }
+}
+
+TEST(SurfaceRegistration, FindsAKnownPose)
+{
+  std::mt19937 random(8);
+  for (int i = 0; i < 10; ++i) {
+    const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
+    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+    const RegistrationReport report = registerSurfaces(problemOf(points, Corner(3)));
+    ASSERT_TRUE(report.hasConverged());
+    EXPECT_LT(distance(report.target_T_source, truth), 1e-4);
+  }
+}
+
+TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
+{
+  std::mt19937 random(9);
+  for (int i = 0; i < 10; ++i) {
+    const SE3 earlier = exp(test::randomTwist(random, 0.2, 0.05));
+    const SE3 truth = earlier * exp(test::randomTwist(random, 0.3, 0.08));
+    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, log(earlier.inverse() * truth)), 900);
+    SurfaceProblem problem = problemOf(points, Corner(3));
+    EXPECT_GT(distance(registerSurfaces(problem).target_T_source, truth), 1e-3) << "the sweep's motion must matter";
+    problem.guess = earlier;
+    problem.earlier_pose = earlier;
+    problem.sweep_per_motion = 1.0;
+    EXPECT_LT(distance(registerSurfaces(problem).target_T_source, truth), 2e-4);
+  }
+}
+
+TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner floor(1);
+  SurfaceProblem problem = problemOf(points, floor);
+  problem.guess_is_prior = true;
+  const RegistrationReport report = registerSurfaces(problem);
+  ASSERT_TRUE(report.hasConverged());
+  EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 1e-3);
+  EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 1e-3);
+  EXPECT_NEAR(report.information(0, 0), 0.0, 1e-9);
+  EXPECT_NEAR(report.information(5, 5), 0.0, 1e-9);
+  EXPECT_NEAR(report.covariance(0, 0), 0.1, 0.02);
+  EXPECT_LT(report.covariance(2, 2), 1e-4);
+}
+
+TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
+{
+  std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  for (std::size_t i = 0; i < points.size(); i += 5) {  // a fifth lies 0.7 m off its wall
+    points[i].x += 0.7F;
+    points[i].y += 0.7F;
+    points[i].z += 0.7F;
+  }
+  EXPECT_LT(registerSurfaces(problemOf(points, Corner(3))).target_T_source.translation.norm(), 2e-3);
+}
+
+TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(exp(Vector6::Constant(0.05))), 3000);
+  VoxelPyramid map(0.3);
+  for (const ScanPoint& point : points) {
+    map.insert({point.x, point.y, point.z}, static_cast<std::uint32_t>(point.time * 16.0F));
+  }
+  SurfaceProblem problem = problemOf(points, map);
+  problem.guess.translation.x() = 0.1;
+  const RegistrationReport one = registerSurfaces(problem);
+  for (const int threads : {2, 3, 8}) {
+    problem.threads = threads;
+    const RegistrationReport other = registerSurfaces(problem);
+    EXPECT_EQ(one.target_T_source.rotation, other.target_T_source.rotation);
+    EXPECT_EQ(one.target_T_source.translation, other.target_T_source.translation);
+    EXPECT_EQ(one.covariance, other.covariance);
+  }
+}
+
+TEST(SurfaceRegistration, TellsWhenThereIsNothingToRegisterWith)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const VoxelPyramid nothing(0.3);
+  EXPECT_EQ(registerSurfaces(problemOf(points, nothing)).termination, Termination::empty_target);
+  const std::vector<ScanPoint> few(points.begin(), points.begin() + 10);
+  EXPECT_EQ(registerSurfaces(problemOf(few, Corner(3))).termination, Termination::too_few_correspondences);
+}
+
+}  // namespace pcl_floam
