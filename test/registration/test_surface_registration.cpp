@@ -122,7 +122,8 @@ TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
     const SE3 earlier = exp(test::randomTwist(random, 0.2, 0.05));
     const SE3 truth = earlier * exp(test::randomTwist(random, 0.3, 0.08));
     const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, log(earlier.inverse() * truth)), 900);
-    SurfaceProblem problem = problemOf(points, Corner(3));
+    const Corner corner(3);
+    SurfaceProblem problem = problemOf(points, corner);
     EXPECT_GT(distance(registerSurfaces(problem).target_T_source, truth), 1e-3) << "the sweep's motion must matter";
     problem.guess = earlier;
     problem.earlier_pose = earlier;
