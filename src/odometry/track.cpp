@@ -100,7 +100,7 @@ RegistrationReport Track::follow(const TrackedSweep& sweep)
   problem.guess_covariance = motion_.poseCovariance();
   problem.sweep_per_motion = sweep.sweep_fraction / sweep.periods;
   problem.threads = threads_;
-  const RegistrationReport report = registerSurfaces(problem);
+  RegistrationReport report = registerSurfaces(problem);
   if (report.hasConverged()) {
     motion_.correct(report.target_T_source, report.covariance);
   }
