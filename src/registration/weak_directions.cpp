@@ -65,6 +65,7 @@ std::vector<double> WeakDirections::shares()
 {
   const AlignmentAnalysis analysis = alignment_.analysis();
   std::vector<double> shares;
+  shares.reserve(6);
   for (int i = 0; i < analysis.weak(weak_); ++i) {
     shares.push_back(share(analysis, i));
   }
