@@ -51,7 +51,7 @@ std::vector<SE3> cut(const std::vector<SE3>& poses, double from, double length)
 
 }  // namespace
 
-std::vector<BodyState> readTrajectory(const TrajectoryPart& part)
+std::vector<BodyState> readTrajectoryPart(const TrajectoryPart& part)
 {
   constexpr std::size_t kLeast = 20;  // poses: two seconds
   const std::vector<SE3> poses = cut(readPoses(part.file), part.from, part.length);

@@ -19,6 +19,6 @@ struct TrajectoryPart {
 /// Reads a part of a trajectory as a body's states 0.1 s apart: x forward, y left, z up, begun at the origin and
 /// looking along x, but for pitch and roll.
 /// \throws std::invalid_argument if the file cannot be read, or holds no such part
-[[nodiscard]] std::vector<BodyState> readTrajectory(const TrajectoryPart& part);
+[[nodiscard]] std::vector<BodyState> readTrajectoryPart(const TrajectoryPart& part);
 
 }  // namespace pcl_floam::simulator

@@ -52,7 +52,7 @@ protected:
 
 TEST_F(GivenTrajectory, IsReadInABodysAxes)
 {
-  const std::vector<BodyState> states = readTrajectory({file_.string(), 100.0, 50.0});
+  const std::vector<BodyState> states = readTrajectoryPart({file_.string(), 100.0, 50.0});
   ASSERT_NEAR(static_cast<double>(states.size()), 51.0, 2.0);
   EXPECT_EQ(states.front().head<3>().norm(), 0.0);
   EXPECT_NEAR(states.front()[3], 0.0, 1e-9);
@@ -66,7 +66,7 @@ TEST_F(GivenTrajectory, IsWhatTheSensorFollows)
 {
   for (const char* name : {"town", "motorway"}) {
     const MotionSpline motion = makeWorld(name, options(0.0, 150.0)).sensor_motion;
-    const std::vector<BodyState> states = readTrajectory({file_.string(), 0.0, 150.0});
+    const std::vector<BodyState> states = readTrajectoryPart({file_.string(), 0.0, 150.0});
     // The spline's k-th knot lies near its (k+1)-th control.
     for (const std::size_t i : {10U, 60U, 120U}) {
       const Eigen::Vector3d apart = motion.pose(0.1 * static_cast<double>(i)).translation - states[i + 1].head<3>();
@@ -77,10 +77,10 @@ TEST_F(GivenTrajectory, IsWhatTheSensorFollows)
 
 TEST_F(GivenTrajectory, RefusesWhatIsNotThere)
 {
-  EXPECT_THROW((void)readTrajectory({"/nowhere.txt", 0.0, 100.0}), std::invalid_argument);
-  EXPECT_THROW((void)readTrajectory({file_.string(), 5000.0, 100.0}), std::invalid_argument);
+  EXPECT_THROW((void)readTrajectoryPart({"/nowhere.txt", 0.0, 100.0}), std::invalid_argument);
+  EXPECT_THROW((void)readTrajectoryPart({file_.string(), 5000.0, 100.0}), std::invalid_argument);
   std::ofstream(file_, std::ios::app) << "1 2 3\n";
-  EXPECT_THROW((void)readTrajectory({file_.string(), 0.0, 1000.0}), std::invalid_argument);
+  EXPECT_THROW((void)readTrajectoryPart({file_.string(), 0.0, 1000.0}), std::invalid_argument);
 }
 
 TEST(HeightRaster, FollowsThePath)

@@ -77,7 +77,7 @@ Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random)
   constexpr double kBeyond = 60.0;  // m of road before and behind the way
   std::vector<BodyState> states = options.trajectory.file.empty()
                                       ? drawStates(drawn, std::min(options.trajectory.length, 400.0), random)
-                                      : readTrajectory(options.trajectory);
+                                      : readTrajectoryPart(options.trajectory);
   const std::vector<Eigen::Vector3d> ground = prolonged(groundBelow(states, 2.0), kBeyond);
   std::vector<Eigen::Vector2d> places;
   for (const Eigen::Vector3d& place : ground) {
