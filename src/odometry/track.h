@@ -20,8 +20,8 @@ struct TrackedSweep {
   double sweep_fraction = 1.0;  ///< duration of the sweep in periods; 0 if its points are of one instant
 };
 
-/// The odometry of the surface engine: predict, register, update (DESIGN: points by space, a pyramid of voxels that
-/// remembers lasers, a variance for each correspondence, one estimate of motion).
+/// The odometry of the surface engine: predict, register, update; points by space, a pyramid of voxels that
+/// remembers lasers, a variance for each correspondence, one estimate of motion.
 ///
 /// All lengths follow from the first scan: cells of the side that its returns fill some 2,000 of.
 class Track {
