@@ -142,6 +142,9 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
 void addCompensationOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Motion compensation");
+  addChoice(app, "--engine", o.parameters.engine,
+            {{"features", OdometryEngine::features}, {"surfaces", OdometryEngine::surfaces}},
+            "what scans are registered by; surfaces hold on open roads");
   addChoice(app, "--compensation", o.parameters.compensation,
             {{"continuous", CompensationMode::continuous},
              {"two-stage", CompensationMode::two_stage},

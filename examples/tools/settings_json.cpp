@@ -79,7 +79,8 @@ Json mapJson(const OdometryParameters& p)
 
 Json toJson(const OdometryParameters& p)
 {
-  Json json = {{"sensor", p.sensor.name},
+  Json json = {{"engine", toString(p.engine)},
+               {"sensor", p.sensor.name},
                {"scan_lines", toString(p.scan_line_source)},
                {"timing", toString(p.timing_source)},
                {"rotation", nameOf(p.rotation)},

@@ -39,22 +39,43 @@ void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTim
   }
 }
 
-void SpatialSampling::forget(std::size_t expected)
+/// As large as the last sample asked for; smaller tables stay in the cache.
+void SpatialSampling::forget()
 {
-  std::size_t slots = 1024;
-  while (slots < 4 * expected) {
+  constexpr std::size_t kFewest = 1024;
+  std::size_t slots = kFewest;
+  while (slots < 4 * used_) {
     slots *= 2;
   }
-  if (table_.size() < slots) {
-    table_.resize(slots);
-  }
-  std::fill(table_.begin(), table_.end(), 0);
+  table_.assign(slots, 0);
+  used_ = 0;
   last_ = 0;
+}
+
+void SpatialSampling::grow()
+{
+  std::vector<std::uint64_t> old(2 * table_.size(), 0);
+  old.swap(table_);
+  for (const std::uint64_t key : old) {
+    if (key != 0) {
+      table_[placeOf(key)] = key;
+    }
+  }
+}
+
+/// Where a key is, or where it would come.
+std::size_t SpatialSampling::placeOf(std::uint64_t key) const
+{
+  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
+  std::size_t i = static_cast<std::size_t>((key * kGolden) >> 32U) & (table_.size() - 1);
+  while (table_[i] != 0 && table_[i] != key) {
+    i = (i + 1) & (table_.size() - 1);
+  }
+  return i;
 }
 
 bool SpatialSampling::isFirst(const ScanPoint& point, float inverse_side)
 {
-  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
   constexpr std::int64_t kOffset = 1 << 20;
   const auto coordinate = [inverse_side](float v) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * inverse_side)) + kOffset) & 0x1FFFFFU;
@@ -64,21 +85,21 @@ bool SpatialSampling::isFirst(const ScanPoint& point, float inverse_side)
     return false;
   }
   last_ = key;
-  std::size_t i = static_cast<std::size_t>((key * kGolden) >> 32U) & (table_.size() - 1);
-  while (table_[i] != 0) {
-    if (table_[i] == key) {
-      return false;
-    }
-    i = (i + 1) & (table_.size() - 1);
+  const std::size_t place = placeOf(key);
+  if (table_[place] == key) {
+    return false;
   }
-  table_[i] = key;
+  table_[place] = key;
+  if (2 * ++used_ > table_.size()) {
+    grow();
+  }
   return true;
 }
 
 void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample)
 {
   sample.clear();
-  forget(points.size());
+  forget();
   const auto inverse_side = static_cast<float>(1.0 / side);
   for (const ScanPoint& point : points) {
     if (isFirst(point, inverse_side)) {

@@ -8,19 +8,20 @@ namespace pcl_floam {
 
 namespace {
 
-/// Fewer points have a shape by chance.
+/// Fewer points have a shape by chance; edges are few, and chosen.
 constexpr std::uint32_t kLeastCount = 6;
+constexpr std::uint32_t kLeastEdges = 4;
 /// A plane's thinnest variance is less than this part of the next, which is at least this part of the widest.
 constexpr double kFlat = 0.05;
 /// Points of one laser lie on its cone, of two on a plane if there is one; any two lasers' points make a line.
 constexpr int kLasersOfPlane = 2;
 constexpr int kLasersOfLine = 3;
-/// m: points that are closer together than twice the range noise may be of a plane of which too little was seen.
-constexpr double kTooThin = 0.04;
+/// The variance of what fills a cell evenly is its squared side over 12; a quarter more, as few points vary by chance.
+constexpr double kEven = 15.0;
 
 }  // namespace
 
-void CellSums::add(double x, double y, double z, std::uint32_t laser)
+void CellSums::add(double x, double y, double z)
 {
   sum[0] += x;
   sum[1] += y;
@@ -31,7 +32,6 @@ void CellSums::add(double x, double y, double z, std::uint32_t laser)
   outer[3] += y * y;
   outer[4] += y * z;
   outer[5] += z * z;
-  lasers |= std::uint64_t{1} << (laser % 64U);
   ++count;
 }
 
@@ -51,10 +51,11 @@ std::array<float, 3> single(const Eigen::Vector3d& v)
 
 }  // namespace
 
-CellFit fitOf(const CellSums& sums)
+CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
 {
-  const int lasers = __builtin_popcountll(sums.lasers);
-  if (sums.count < kLeastCount || lasers < kLasersOfPlane) {
+  const int lasers = sums.support.lasers();
+  const bool edges = shapes == SurfaceShapes::lines;
+  if (sums.count < (edges ? kLeastEdges : kLeastCount) || lasers < kLasersOfPlane) {
     return {};
   }
   const Eigen::Vector3d mean = Eigen::Vector3d(sums.sum[0], sums.sum[1], sums.sum[2]) / sums.count;
@@ -68,13 +69,18 @@ CellFit fitOf(const CellSums& sums)
     fit.direction = single(eigen.eigenvectors().col(2));
     fit.thickness = static_cast<float>(variance[1]);
     fit.extent = static_cast<float>(variance[2]);
+  } else if (edges) {
+    fit.kind = SurfaceKind::unknown;
   } else if (variance[0] < kFlat * variance[1]) {
     fit.kind = SurfaceKind::plane;
     fit.direction = single(eigen.eigenvectors().col(0));
     fit.thickness = static_cast<float>(variance[0]);
     fit.extent = static_cast<float>(variance[1]);
-  } else if (variance[0] > kTooThin * kTooThin) {
+  } else {
     fit.kind = SurfaceKind::point;
+    const Eigen::Vector3d felt = (1.0 - variance.array() * (kEven / (side * side))).max(0.0);
+    Eigen::Map<Eigen::Matrix3f>(fit.felt.data()) =
+        (eigen.eigenvectors() * felt.asDiagonal() * eigen.eigenvectors().transpose()).cast<float>();
   }
   return fit;
 }

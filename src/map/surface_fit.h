@@ -2,6 +2,8 @@
 /// The shape of a cell's points from their running sums.
 #pragma once
 
+#include "map/laser_support.h"
+
 #include <pcl_floam/map/surface.h>
 
 #include <Eigen/Core>
@@ -12,14 +14,20 @@
 
 namespace pcl_floam {
 
+/// Which shapes a map looks for.
+enum class SurfaceShapes : std::uint8_t {
+  all,
+  lines  ///< of edge features: all that they tell is where a line is
+};
+
 /// Count, sum and sum of outer products of points about a common origin, and the lasers that saw them.
 struct CellSums {
   std::array<double, 3> sum{};
   std::array<double, 6> outer{};  // xx xy xz yy yz zz
-  std::uint64_t lasers = 0;       // bit m mod 64: laser m
+  LaserSupport support;
   std::uint32_t count = 0;
 
-  void add(double x, double y, double z, std::uint32_t laser);
+  void add(double x, double y, double z);
 };
 
 /// What the sums tell. Offsets are from the sums' origin.
@@ -27,12 +35,14 @@ struct CellFit {
   SurfaceKind kind = SurfaceKind::unknown;
   std::array<float, 3> mean{};
   std::array<float, 3> direction{};
+  std::array<float, 9> felt{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F};
   float thickness = 0.0F;
   float extent = 0.0F;
 };
 
 /// A shape that chance or the sampling pattern of a single laser would give is none.
-[[nodiscard]] CellFit fitOf(const CellSums& sums);
+/// \param side m, of the cell
+[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side);
 
 /// A fit that is worked out when it is first asked for, by whichever thread asks.
 struct CachedFit {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pcl_floam {
 
@@ -22,7 +21,10 @@ Eigen::Vector3d towards(unsigned octant)
 
 }  // namespace
 
-VoxelPyramid::VoxelPyramid(double side) : side_(side), squared_spacing_(side * side / kPointsPerLeaf) {}
+VoxelPyramid::VoxelPyramid(double side, SurfaceShapes shapes)
+    : side_(side), squared_spacing_(side * side / kPointsPerLeaf), shapes_(shapes)
+{
+}
 
 Eigen::Vector3d VoxelPyramid::centerOf(const BlockKey& key) const
 {
@@ -69,101 +71,137 @@ bool VoxelPyramid::insert(const Eigen::Vector3d& point, std::uint32_t laser)
   const Place place = placeOf(point);
   const Path path = makePathTo(place);
   Leaf& leaf = leaves_[cells_[path.cell[0]].child[0]];
-  if (leaf.count >= kPointsPerLeaf ||
-      (leaf.count > 0 && (nearestIn(leaf, place.offset) - place.offset).squaredNorm() < squared_spacing_)) {
+  Nearest nearest;
+  findNearest(leaf, place.offset, nearest);
+  if (leaf.count >= kPointsPerLeaf || nearest.squared < squared_spacing_) {
     return false;
   }
   const Eigen::Vector3f p = place.offset.cast<float>();
   leaf.point[leaf.count++] = {p.x(), p.y(), p.z(), laser};
   ++points_;
   for (const std::uint32_t cell : path.cell) {
-    cells_[cell].sums.add(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()), laser);
+    cells_[cell].sums.add(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()));
+    cells_[cell].sums.support.add(laser, keyframe_);
     cells_[cell].fit.state.store(CachedFit::stale, std::memory_order_relaxed);
   }
   return true;
 }
 
-/// A thread that finds a fit in the making works it out for itself rather than wait.
-CellFit VoxelPyramid::fitOf(const Cell& cell)
+/// A thread that finds a fit in the making works it out for itself rather than wait, in \p own.
+const CellFit& VoxelPyramid::fitOf(const Cell& cell, int level, CellFit& own) const
 {
   std::uint8_t state = cell.fit.state.load(std::memory_order_acquire);
   if (state == CachedFit::ready) {
     return cell.fit.fit;
   }
-  const CellFit fit = pcl_floam::fitOf(cell.sums);
+  own = pcl_floam::fitOf(cell.sums, shapes_, sideOf(level));
   if (state == CachedFit::stale && cell.fit.state.compare_exchange_strong(state, CachedFit::being_made)) {
-    cell.fit.fit = fit;
+    cell.fit.fit = own;
     cell.fit.state.store(CachedFit::ready, std::memory_order_release);
   }
-  return fit;
+  return own;
 }
 
 VoxelPyramid::Path VoxelPyramid::pathTo(const Place& place) const
 {
   Path path;
   path.cell[kLevels - 1] = table_.find(place.key.packed());
-  Eigen::Vector3d offset = place.offset;
+  path.center[kLevels - 1].setZero();
   for (std::size_t level = kLevels - 1; level > 0 && path.cell[level] != 0; --level) {
-    const unsigned child = octant(offset);
-    offset -= 0.5 * sideOf(static_cast<int>(level) - 1) * towards(child);
+    const unsigned child = octant(place.offset - path.center[level]);
+    path.center[level - 1] = path.center[level] + 0.5 * sideOf(static_cast<int>(level) - 1) * towards(child);
     path.cell[level - 1] = cells_[path.cell[level]].child[child];
   }
   return path;
 }
 
-Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point) const
+/// A line of edge features is seen by three lasers; that is support enough.
+bool VoxelPyramid::isSupported(const Cell& cell, std::uint32_t laser) const
 {
-  Surface surface;
+  constexpr int kOthers = 2;
+  return shapes_ == SurfaceShapes::lines || cell.sums.support.besides(laser, keyframe_) >= kOthers;
+}
+
+Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
+{
   if (!point.allFinite()) {
-    return surface;
+    return {};
   }
   const Place place = placeOf(point);
   const Path path = pathTo(place);
-  for (std::size_t level = 0; level < kLevels && surface.kind == SurfaceKind::unknown; ++level) {
-    if (path.cell[level] == 0) {
+  for (int level = 0; level < kLevels; ++level) {
+    const std::uint32_t number = path.cell[static_cast<std::size_t>(level)];
+    if (number == 0 || !isSupported(cells_[number], laser)) {
       continue;
     }
-    const Cell& cell = cells_[path.cell[level]];
-    const CellFit fit = fitOf(cell);
-    // Single points are the same again only where they lie close together: in wider cells the nearest one is a point of
-    // the same laser's pattern, which moves along with the sensor.
-    if (fit.kind == SurfaceKind::point && level > 0) {
-      continue;
+    CellFit own;
+    const CellFit& fit = fitOf(cells_[number], level, own);
+    if (fit.kind != SurfaceKind::unknown) {
+      return surfaceIn(path, level, place, fit);
     }
-    const Eigen::Vector3d center = centerOf(place.key);
-    surface.kind = fit.kind;
-    surface.count = cell.sums.count;
-    surface.size = sideOf(static_cast<int>(level));
-    surface.center = center + Eigen::Vector3f(fit.mean.data()).cast<double>();
-    surface.direction = Eigen::Vector3f(fit.direction.data()).cast<double>();
-    surface.thickness = static_cast<double>(fit.thickness);
-    surface.extent = static_cast<double>(fit.extent);
-    if (fit.kind == SurfaceKind::point) {
-      surface.center = center + nearestIn(leaves_[cell.child[0]], place.offset);
-      surface.thickness = squared_spacing_;
-    }
+  }
+  return {};
+}
+
+Surface VoxelPyramid::surfaceIn(const Path& path, int level, const Place& place, const CellFit& fit) const
+{
+  const auto at = static_cast<std::size_t>(level);
+  Surface surface;
+  surface.kind = fit.kind;
+  surface.count = cells_[path.cell[at]].sums.count;
+  surface.size = sideOf(level);
+  surface.center = centerOf(place.key) + Eigen::Vector3f(fit.mean.data()).cast<double>();
+  surface.direction = Eigen::Vector3f(fit.direction.data()).cast<double>();
+  surface.thickness = static_cast<double>(fit.thickness);
+  surface.extent = static_cast<double>(fit.extent);
+  if (fit.kind == SurfaceKind::point) {
+    Nearest nearest;
+    findNearest(path.cell[at], level, path.center[at], place.offset, nearest);
+    surface.center = centerOf(place.key) + nearest.place;
+    surface.thickness = squared_spacing_;
+    surface.felt = Eigen::Map<const Eigen::Matrix3f>(fit.felt.data()).cast<double>();
   }
   return surface;
 }
 
-Eigen::Vector3d VoxelPyramid::nearestIn(const Leaf& leaf, const Eigen::Vector3d& offset)
+/// Nearest cells first; those that lie farther off than what was found are left out.
+void VoxelPyramid::findNearest(std::uint32_t cell, int level, const Eigen::Vector3d& center,
+                               const Eigen::Vector3d& offset, Nearest& nearest) const
 {
-  Eigen::Vector3d nearest = Eigen::Vector3d::Zero();
-  double squared = std::numeric_limits<double>::infinity();
-  for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    const Eigen::Vector3d p(leaf.point[i].x, leaf.point[i].y, leaf.point[i].z);
-    if ((p - offset).squaredNorm() < squared) {
-      squared = (p - offset).squaredNorm();
-      nearest = p;
+  const Eigen::Vector3d outside = ((offset - center).cwiseAbs().array() - 0.5 * sideOf(level)).max(0.0);
+  if (outside.squaredNorm() >= nearest.squared) {
+    return;
+  }
+  if (level == 0) {
+    findNearest(leaves_[cells_[cell].child[0]], offset, nearest);
+    return;
+  }
+  const unsigned first = octant(offset - center);
+  for (unsigned i = 0; i < 8; ++i) {
+    const unsigned child = first ^ i;
+    const std::uint32_t number = cells_[cell].child[child];
+    if (number != 0) {
+      findNearest(number, level - 1, center + 0.5 * sideOf(level - 1) * towards(child), offset, nearest);
     }
   }
-  return nearest;
 }
 
-void VoxelPyramid::find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const
+void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3d& offset, Nearest& nearest)
+{
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    const Eigen::Vector3d p(leaf.point[i].x, leaf.point[i].y, leaf.point[i].z);
+    const double squared = (p - offset).squaredNorm();
+    if (squared < nearest.squared) {
+      nearest = {p, squared};
+    }
+  }
+}
+
+void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
+                        Surface* surfaces) const
 {
   for (std::size_t i = 0; i < count; ++i) {
-    surfaces[i] = surfaceAt(places[i]);
+    surfaces[i] = surfaceAt(places[i], lasers[i]);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -30,20 +31,24 @@ public:
   static constexpr int kPointsPerLeaf = 20;
 
   /// \param side m, of the finest cells
-  explicit VoxelPyramid(double side);
+  explicit VoxelPyramid(double side, SurfaceShapes shapes = SurfaceShapes::all);
 
   [[nodiscard]] double side() const { return side_; }
   [[nodiscard]] std::size_t size() const { return points_; }
   [[nodiscard]] std::size_t cells() const { return cells_.used(); }
 
+  /// What comes in from now on is of another keyframe.
+  void beginKeyframe() { ++keyframe_; }
+
   /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
   bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
 
   [[nodiscard]] bool empty() const override { return points_ == 0; }
-  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
+  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
+            Surface* surfaces) const override;
 
-  /// The surface at a place: of the finest cell around it whose shape several lasers support.
-  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place) const;
+  /// The surface at a place that a laser sees: of the finest cell around it whose shape others support.
+  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place, std::uint32_t laser) const;
 
   /// Drops the blocks whose centres are farther from \p center than \p radius.
   void crop(const Eigen::Vector3d& center, double radius);
@@ -69,22 +74,33 @@ private:
     Eigen::Vector3d offset;  // from the block's centre
   };
 
-  /// The cells around a place, by level; 0 where there is none.
+  /// The cells around a place, by level; 0 where there is none. Their centres from that of the block.
   struct Path {
     std::array<std::uint32_t, kLevels> cell{};
+    std::array<Eigen::Vector3d, kLevels> center;
+  };
+  struct Nearest {
+    Eigen::Vector3d place = Eigen::Vector3d::Zero();
+    double squared = std::numeric_limits<double>::infinity();
   };
 
   [[nodiscard]] Place placeOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] Eigen::Vector3d centerOf(const BlockKey& key) const;
   [[nodiscard]] Path pathTo(const Place& place) const;
   Path makePathTo(const Place& place);
-  static CellFit fitOf(const Cell& cell);
-  static Eigen::Vector3d nearestIn(const Leaf& leaf, const Eigen::Vector3d& offset);
+  const CellFit& fitOf(const Cell& cell, int level, CellFit& own) const;
+  [[nodiscard]] bool isSupported(const Cell& cell, std::uint32_t laser) const;
+  [[nodiscard]] Surface surfaceIn(const Path& path, int level, const Place& place, const CellFit& fit) const;
+  void findNearest(std::uint32_t cell, int level, const Eigen::Vector3d& center, const Eigen::Vector3d& offset,
+                   Nearest& nearest) const;
+  static void findNearest(const Leaf& leaf, const Eigen::Vector3d& offset, Nearest& nearest);
   void release(std::uint32_t cell, int level);
   [[nodiscard]] double sideOf(int level) const { return side_ * (1 << level); }
 
   double side_;
   double squared_spacing_;
+  SurfaceShapes shapes_;
+  std::uint32_t keyframe_ = 0;
   std::size_t points_ = 0;
   ChunkedPool<Cell> cells_;
   ChunkedPool<Leaf> leaves_;

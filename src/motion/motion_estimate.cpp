@@ -2,22 +2,20 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
-
 namespace pcl_floam {
 
 namespace {
 
 using Block6 = Eigen::Matrix<double, 6, 6>;
 
-/// A first guess, m and rad a period: a car on a motorway, a hand that turns the sensor.
+/// How far a velocity that nothing is known of may be from none, m and rad a period: a car on a motorway, a hand that
+/// turns the sensor.
 constexpr double kFirstTranslation = 0.3;
-constexpr double kFirstRotation = 0.05;
-/// Standard deviations a prediction is never better than, m and rad: motion may begin at any time.
-constexpr double kLeastTranslation = 0.01;
-constexpr double kLeastRotation = 0.002;
-/// What of the mean a new error replaces.
-constexpr double kShare = 0.15;
+constexpr double kFirstRotation = 0.15;
+/// By how much a prediction over one period is off, m and rad, per coordinate: 5 m/s^2 and 180 degrees/s^2 at ten
+/// sweeps a second.
+constexpr double kTranslation = 0.05;
+constexpr double kRotation = 0.03;
 /// With exact poses the variance of a prediction over one period is so many times the density: 1/3 of it for the
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
 constexpr double kPerDensity = 0.62;
@@ -42,18 +40,12 @@ Block6 turned(const Eigen::Matrix3d& rotation)
 
 }  // namespace
 
-MotionEstimate::MotionEstimate(const SE3& world_T_sensor)
-    : pose_(world_T_sensor),
-      translation_error_(kFirstTranslation * kFirstTranslation),
-      rotation_error_(kFirstRotation * kFirstRotation)
+MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity)
+    : pose_(world_T_sensor), velocity_(velocity)
 {
-}
-
-MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity) : MotionEstimate(world_T_sensor)
-{
-  velocity_ = velocity;
   for (int i = 0; i < 6; ++i) {
-    covariance_(6 + i, 6 + i) = i < 3 ? translation_error_ : rotation_error_;
+    const double first = i < 3 ? kFirstTranslation : kFirstRotation;
+    covariance_(6 + i, 6 + i) = first * first;
   }
 }
 
@@ -61,6 +53,15 @@ Matrix6 MotionEstimate::poseCovariance() const
 {
   const Block6 r = turned(pose_.rotation);
   return r * covariance_.topLeftCorner<6, 6>() * r.transpose();
+}
+
+void MotionEstimate::place(const SE3& world_T_sensor, const Matrix6& covariance)
+{
+  pose_ = world_T_sensor;
+  const Block6 r = turned(pose_.rotation).transpose();
+  covariance_.topLeftCorner<6, 6>() = r * covariance * r.transpose();
+  covariance_.topRightCorner<6, 6>().setZero();
+  covariance_.bottomLeftCorner<6, 6>().setZero();
 }
 
 void MotionEstimate::predict(double periods)
@@ -74,44 +75,41 @@ void MotionEstimate::predict(double periods)
   const Eigen::Matrix<double, 12, 12> before = covariance_;
   covariance_ = f * before * f.transpose();
   for (int i = 0; i < 6; ++i) {
-    const double least = i < 3 ? kLeastTranslation : kLeastRotation;
-    const double q = std::max(i < 3 ? translation_error_ : rotation_error_, least * least) / kPerDensity;
+    const double error = i < 3 ? kTranslation : kRotation;
+    const double q = error * error / kPerDensity;
     covariance_(i, i) += q * periods * periods * periods / 3.0;
     covariance_(i, 6 + i) += q * periods * periods / 2.0;
     covariance_(6 + i, i) += q * periods * periods / 2.0;
     covariance_(6 + i, 6 + i) += q * periods;
   }
-  predicted_periods_ += periods;
 }
 
-void MotionEstimate::learn(const Vector6& error)
+/// The regression of the velocity's error on the pose's.
+Matrix6 MotionEstimate::velocityPerPose() const
 {
-  if (predicted_periods_ > 0.0 && predicted_periods_ < 1.5) {
-    translation_error_ += kShare * (error.head<3>().squaredNorm() / 3.0 - translation_error_);
-    rotation_error_ += kShare * (error.tail<3>().squaredNorm() / 3.0 - rotation_error_);
-  }
-  predicted_periods_ = 0.0;
+  const Eigen::Matrix<double, 12, 12> p = covariance_;
+  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise_;
+  return innovation.ldlt().solve(Block6(p.topRightCorner<6, 6>())).transpose();
 }
 
-void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance)
+void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance, const Matrix6& noise)
 {
   Vector6 error;
   error.head<3>() = pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation);
   error.tail<3>() = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
-  learn(error);
   const Block6 r = turned(pose_.rotation).transpose();
   const Block6 posterior = r * covariance * r.transpose();
+  noise_ = r * noise * r.transpose();
   const Eigen::Matrix<double, 12, 12> p = covariance_;
-  const Block6 pp = p.topLeftCorner<6, 6>();
-  const Block6 vp = p.bottomLeftCorner<6, 6>();
-  // The regression of the velocity's error on the pose's.
-  const Block6 gain = pp.ldlt().solve(vp.transpose()).transpose();
+  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise_;
+  const Block6 gain = velocityPerPose();
   velocity_ += gain * error;
   Eigen::Matrix<double, 12, 12> after;
   after.topLeftCorner<6, 6>() = posterior;
   after.bottomLeftCorner<6, 6>() = gain * posterior;
   after.topRightCorner<6, 6>() = posterior * gain.transpose();
-  after.bottomRightCorner<6, 6>() = Block6(p.bottomRightCorner<6, 6>()) - gain * (pp - posterior) * gain.transpose();
+  after.bottomRightCorner<6, 6>() =
+      Block6(p.bottomRightCorner<6, 6>()) - gain * (innovation - posterior) * gain.transpose();
   covariance_ = after;
   pose_ = world_T_sensor;
   pose_.rotation = nearestRotation(pose_.rotation);

@@ -1,7 +1,5 @@
 #include "odometry/constant_velocity.h"
 
-#include "common/median.h"
-
 #include <Eigen/Cholesky>
 
 #include <algorithm>
@@ -11,10 +9,7 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kRememberedPeriods = 9;
 constexpr double kMaxExtrapolation = 10.0;  // periods
-constexpr double kClockWasSet = 100.0;      // periods
-constexpr double kNoTime = 0.01;            // periods; a velocity over less would be the noise of the pose
 constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface is as likely as not another one
 
 /// A pose's covariance is that of an average scene. Where little tells of a direction its errors are larger and go on
@@ -22,45 +17,6 @@ constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface 
 constexpr double kPoseErrorsPerVariance = 4.0;
 
 }  // namespace
-
-double ScanClock::period() const
-{
-  if (given_period_ > 0.0 || recent_.empty()) {
-    return given_period_;
-  }
-  std::vector<double> recent = recent_;
-  return medianOf(recent);
-}
-
-double ScanClock::tick(std::optional<double> stamp)
-{
-  if (!stamp || !std::isfinite(*stamp)) {
-    return 1.0;
-  }
-  if (!last_stamp_) {
-    last_stamp_ = stamp;
-    return 1.0;
-  }
-  const double elapsed = *stamp - *last_stamp_;
-  const double usual = period();
-  last_stamp_ = stamp;
-  const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
-  if (elapsed > 0.0 && std::isfinite(elapsed)) {
-    remember(elapsed);  // in any case: the period may have been taken from stamps that were wrong
-  }
-  if (!clock_was_set && elapsed <= kNoTime * usual) {
-    return 0.0;
-  }
-  return clock_was_set ? 1.0 : elapsed / period();
-}
-
-void ScanClock::remember(double elapsed)
-{
-  if (recent_.size() == kRememberedPeriods) {
-    recent_.erase(recent_.begin());
-  }
-  recent_.push_back(elapsed);
-}
 
 SE3 ConstantVelocity::motion(double periods) const
 {

@@ -1,10 +1,12 @@
 #include "common/parameter_check.h"
-#include "odometry/scan_tracking.h"
+#include "odometry/feature_odometry.h"
+#include "odometry/surface_odometry.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 namespace pcl_floam {
 
@@ -19,6 +21,11 @@ const char* toString(TrackingState state)
   return "unknown";
 }
 
+const char* toString(OdometryEngine engine)
+{
+  return engine == OdometryEngine::surfaces ? "surfaces" : "features";
+}
+
 void validate(const OdometryParameters& p)
 {
   const ParameterCheck check("odometry");
@@ -31,6 +38,24 @@ void validate(const OdometryParameters& p)
   validate(p.registration);
   validate(p.map);
 }
+
+struct OdometryPipeline::Impl {
+  using Engine = std::variant<FeatureOdometry, SurfaceOdometry>;
+
+  explicit Impl(const OdometryParameters& p)
+      : engine(p.engine == OdometryEngine::surfaces ? Engine(SurfaceOdometry(p)) : Engine(FeatureOdometry(p)))
+  {
+  }
+
+  /// What both have: `visit([](auto& odometry) ...)`.
+  template <typename Visitor>
+  decltype(auto) visit(Visitor visitor)
+  {
+    return std::visit(visitor, engine);
+  }
+
+  Engine engine;
+};
 
 OdometryPipeline::OdometryPipeline(const OdometryParameters& parameters)
 {
@@ -51,33 +76,32 @@ OdometryPipeline& OdometryPipeline::operator=(const OdometryPipeline& other)
 
 const OdometryReport& OdometryPipeline::track(const CloudView& scan, std::optional<double> stamp)
 {
-  return impl_->track(scan, stamp);
+  return impl_->visit([&](auto& odometry) -> const OdometryReport& { return odometry.track(scan, stamp); });
 }
 
 const OdometryReport& OdometryPipeline::trackMissing(std::optional<double> stamp)
 {
-  impl_->beginScan(0, stamp);
-  return impl_->seeNothing("the scan is missing");
+  return impl_->visit([&](auto& odometry) -> const OdometryReport& { return odometry.miss(stamp); });
 }
 
 const OdometryReport& OdometryPipeline::report() const
 {
-  return impl_->report;
+  return impl_->visit([](auto& odometry) -> const OdometryReport& { return odometry.report; });
 }
 
 SE3 OdometryPipeline::pose() const
 {
-  return impl_->report.world_T_sensor;
+  return report().world_T_sensor;
 }
 
 const KeyframeVoxelMap& OdometryPipeline::map() const
 {
-  return impl_->map;
+  return impl_->visit([](auto& odometry) -> const KeyframeVoxelMap& { return odometry.map; });
 }
 
 const OdometryParameters& OdometryPipeline::parameters() const
 {
-  return impl_->parameters;
+  return impl_->visit([](auto& odometry) -> const OdometryParameters& { return odometry.parameters; });
 }
 
 void OdometryPipeline::localizeIn(KeyframeVoxelMap map, const SE3& world_T_sensor, MapUse use)
@@ -85,23 +109,21 @@ void OdometryPipeline::localizeIn(KeyframeVoxelMap map, const SE3& world_T_senso
   if (map.empty()) {
     throw std::invalid_argument("the map to localise in is empty");
   }
-  if (!world_T_sensor.isFinite()) {
-    throw std::invalid_argument("the pose to begin with is not finite");
-  }
   reset(world_T_sensor);
-  impl_->map = std::move(map);
-  impl_->prior_map = use;
-  impl_->started = true;
-  impl_->motion.begin(world_T_sensor);
-  impl_->world_T_keyframe = world_T_sensor;
+  impl_->visit([&](auto& odometry) { odometry.localizeIn(std::move(map), use); });
 }
 
 void OdometryPipeline::reset(const SE3& world_T_sensor)
 {
-  const OdometryParameters parameters = impl_->parameters;
-  impl_ = std::make_unique<Impl>(parameters);
-  impl_->initial_pose = world_T_sensor;
-  impl_->report.world_T_sensor = world_T_sensor;
+  if (!world_T_sensor.isFinite()) {
+    throw std::invalid_argument("the pose to begin with is not finite");
+  }
+  const OdometryParameters given = parameters();
+  impl_ = std::make_unique<Impl>(given);
+  impl_->visit([&](auto& odometry) {
+    odometry.initial_pose = world_T_sensor;
+    odometry.report.world_T_sensor = world_T_sensor;
+  });
 }
 
 }  // namespace pcl_floam

@@ -1,123 +1,257 @@
 #include "odometry/track.h"
 
-#include "registration/surface_registration.h"
 #include "registration/sweep_points.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <utility>
 
 namespace pcl_floam {
 
 namespace {
 
-/// Points that are registered, about.
-constexpr std::size_t kCells = 2000;
 /// A keyframe, in sides of the finest cells and in rad.
 constexpr double kKeyframeSides = 0.3;
 constexpr double kKeyframeTurn = 0.1;
-/// m: what lies farther from the sensor is forgotten.
-constexpr double kHorizon = 150.0;
+constexpr double kNoiseShare = 1.0;
+/// Standard deviations that a registration begins with.
+constexpr double kLook = 3.0;
+
+Matrix6 covarianceOf(double translation, double rotation)
+{
+  Vector6 variance;
+  variance << Eigen::Vector3d::Constant(translation * translation), Eigen::Vector3d::Constant(rotation * rotation);
+  return variance.asDiagonal();
+}
+
+void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
+{
+  map.beginKeyframe();
+  for (const ScanPoint& point : points) {
+    map.insert(sensor.at(point), point.laser);
+  }
+}
 
 }  // namespace
 
-RegistrationReport Track::step(const TrackedSweep& sweep)
+TrackMap::TrackMap(double side, const TrackSettings& settings)
+    : space(side), edges(side, SurfaceShapes::lines), horizon(settings.horizon)
 {
-  RegistrationReport report;
-  if (sweep.points->empty()) {
-    report.termination = Termination::too_few_features;
-    report.target_T_source = motion_.pose();
-    return report;
-  }
-  if (sweeps_ == 0) {
-    begin(sweep);
-    ++sweeps_;
-    return report;
-  }
-  sampling_.sample(*sweep.points, side_, sample_);
-  report = sweeps_ == 1 ? findFirstMotion(sweep) : follow(sweep);
-  if (report.hasConverged()) {
-    ++sweeps_;
-    if (sweeps_ == 2 || isKeyframe()) {
-      insert(*sweep.points, motion_.pose(), report.sweep_twist);
-      map_->crop(motion_.pose().translation, kHorizon);
-      keyframe_ = motion_.pose();
-    }
-  }
-  return report;
 }
 
-void Track::begin(const TrackedSweep& sweep)
+void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
-  side_ = sampling_.sideFor(*sweep.points, kCells);
-  first_ = *sweep.points;
-  first_fraction_ = sweep.sweep_fraction;
+  const MovingSensor sensor(pose.middle, pose.twist);
+  insertInto(space, sweep.dense, sensor);
+  insertInto(edges, sweep.edges, sensor);
+  space.crop(pose.middle.translation, horizon);
+  edges.crop(pose.middle.translation, horizon);
 }
 
-/// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the second
-/// registered with what comes out, again and again, looking less and less far.
-RegistrationReport Track::findFirstMotion(const TrackedSweep& sweep)
+SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
+                                 int rounds)
 {
-  constexpr int kRounds = 6;
-  constexpr double kFarthest = 2.0;       // m, of the first round
-  constexpr double kFarthestTurn = 0.04;  // rad, alike
-  constexpr double kLook = 3.0;           // standard deviations that the registration begins with
-  RegistrationReport report;
-  SE3 first_T_second;
-  double far = 1.0 / kLook;
-  for (int round = 0; round <= kRounds; ++round, far *= 0.5) {
-    map_.emplace(side_);
-    const Vector6 motion = log(first_T_second) / sweep.periods;
-    insert(first_, SE3(), first_fraction_ * motion);
-    if (round == kRounds) {  // the map that is kept
-      motion_ = MotionEstimate(SE3(), motion);
-      motion_.predict(sweep.periods);
-      motion_.correct(first_T_second, report.covariance);
-      break;
-    }
-    SurfaceProblem problem;
-    problem.points = &sample_;
-    problem.target = &*map_;
+  constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
+  SurfaceRegistration found;
+  SE3 first_T_second = exp(second.periods * velocity);
+  for (int round = 0; round < rounds; ++round, far *= 0.5) {
+    const Vector6 motion = log(first_T_second) / second.periods;
+    map_.emplace(side_, settings_);
+    map_->insert(first, {SE3(), first.fraction * motion});
+    SurfaceProblem problem = problemFor(second);
     problem.guess = first_T_second;
-    problem.guess_covariance.topLeftCorner<3, 3>() *= far * far * kFarthest * kFarthest / 3.0;
-    problem.guess_covariance.bottomRightCorner<3, 3>() *= far * far * kFarthestTurn * kFarthestTurn / 3.0;
+    problem.guess_covariance =
+        covarianceOf(far / (kLook * std::sqrt(3.0)), kTurnPerMetre * far / (kLook * std::sqrt(3.0)));
     problem.guess_is_prior = false;
-    problem.sweep_per_motion = sweep.sweep_fraction / sweep.periods;
-    problem.threads = threads_;
-    report = registerSurfaces(problem);
-    if (!report.hasConverged()) {
-      return report;
+    problem.sweep.twist = second.fraction * motion;
+    problem.sweep.gain = second.fraction / second.periods * Matrix6(Matrix6::Identity());
+    problem.wants_evidence = round + 1 == rounds;
+    found = registerSurfaces(problem);
+    if (!found.report.hasConverged()) {
+      return found;
     }
-    first_T_second = report.target_T_source;
+    first_T_second = found.report.target_T_source;
   }
-  return report;
+  const Vector6 motion = log(first_T_second) / second.periods;
+  map_.emplace(side_, settings_);
+  map_->insert(first, {SE3(), first.fraction * motion});
+  motion_ = MotionEstimate(SE3(), motion);
+  motion_.predict(second.periods);
+  found.report.sweep_twist = second.fraction * motion;
+  evidence_ = found.evidence / kResidualsPerIndependentOne;
+  update(second, found);
+  return found;
 }
 
-RegistrationReport Track::follow(const TrackedSweep& sweep)
+void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses)
+{
+  constexpr double kKnown = 0.01;  // m and rad
+  map_.emplace(side_, settings_);
+  Vector6 velocity = Vector6::Zero();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::size_t next = std::max<std::size_t>(i, 1);
+    velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
+    pose_ = {poses[i], sweeps[i].fraction * velocity};
+    motion_ = MotionEstimate(poses[i], velocity);
+    motion_.place(poses[i], covarianceOf(kKnown, kKnown));
+    if (i == 0 || isKeyframe()) {
+      map_->insert(sweeps[i], pose_);
+      keyframe_ = poses[i];
+    }
+  }
+}
+
+SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map)
+{
+  constexpr double kFar = 3.0;      // m
+  constexpr double kTurned = 0.25;  // rad
+  constexpr int kRounds = 4;
+  map_.emplace(std::move(map));
+  keeps_map_ = keeps_map;
+  keyframe_ = guess;
+  SurfaceRegistration found;
+  found.report.target_T_source = guess;
+  double part = 1.0;
+  for (int round = 0; round < kRounds; ++round, part *= 0.5) {
+    found = registerFrom(sweep, found.report.target_T_source, part * kFar, part * kTurned);
+  }
+  motion_ = MotionEstimate(guess);
+  motion_.place(guess, covarianceOf(kFar, kTurned));
+  if (found.report.hasConverged()) {
+    update(sweep, found);
+  }
+  return found;
+}
+
+SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
+{
+  const MotionEstimate before = motion_;
+  predict(sweep);
+  SurfaceProblem problem = problemFor(sweep);
+  problem.wants_evidence = is_judged;
+  problem.keeps_unseen = !is_judged;
+  const SurfaceRegistration registration = registerSurfaces(problem);
+  if (registration.report.hasConverged()) {
+    judge(registration);
+    update(sweep, registration);
+  } else {
+    motion_ = before;
+  }
+  return registration;
+}
+
+/// Motion Estimation (Eq. 2).
+void Track::predict(const Sweep& sweep)
+{
+  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
+  motion_.predict(sweep.periods);
+  if (sweep.periods > kLong) {
+    seekAllAround(sweep);
+  }
+}
+
+/// After a time without scans: where the sensor was, and where it would be by now, turned by any angle about its axis.
+void Track::seekAllAround(const Sweep& sweep)
+{
+  constexpr int kTurns = 18;
+  constexpr int kUntilKnown = 3;   // sweeps until the velocity is known again
+  constexpr double kReach = 1.0;   // m
+  constexpr double kTurned = 0.4;  // rad
+  SurfaceProblem as_predicted = problemFor(sweep);
+  as_predicted.wants_evidence = true;
+  SurfaceRegistration best = registerSurfaces(as_predicted);
+  bool is_elsewhere = !best.report.hasConverged();
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const Eigen::AngleAxisd about_axis(2.0 * M_PI * turn / kTurns, Eigen::Vector3d::UnitZ());
+    for (const SE3& place : {pose_.middle, motion_.pose()}) {
+      const SE3 guess(place.rotation * about_axis.toRotationMatrix(), place.translation);
+      const SurfaceRegistration found = registerFrom(sweep, guess, kReach, kTurned);
+      if (found.report.hasConverged() && (!best.report.hasConverged() || found.evidence > best.evidence)) {
+        best = found;
+        is_elsewhere = true;
+      }
+    }
+  }
+  if (is_elsewhere && best.report.hasConverged()) {
+    motion_ = MotionEstimate();  // the velocity of that long ago tells nothing
+    sweeps_to_wait_ = kUntilKnown;
+    motion_.place(best.report.target_T_source, covarianceOf(0.1 * kReach, 0.1 * kTurned));
+  }
+}
+
+SurfaceRegistration Track::registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const
+{
+  SurfaceProblem problem = problemFor(sweep);
+  problem.guess = guess;
+  problem.guess_covariance = covarianceOf(far / (kLook * std::sqrt(3.0)), far_turn / (kLook * std::sqrt(3.0)));
+  problem.guess_is_prior = false;
+  problem.sweep = {};
+  problem.wants_evidence = true;
+  return registerSurfaces(problem);
+}
+
+SurfaceProblem Track::problemFor(const Sweep& sweep) const
 {
   SurfaceProblem problem;
-  problem.earlier_pose = motion_.pose();
-  motion_.predict(sweep.periods);
-  problem.points = &sample_;
-  problem.target = &*map_;
+  problem.scan = {&sweep.sample, &map_->space};
+  problem.edges = {&sweep.edges, &map_->edges};
   problem.guess = motion_.pose();
   problem.guess_covariance = motion_.poseCovariance();
-  problem.sweep_per_motion = sweep.sweep_fraction / sweep.periods;
-  problem.threads = threads_;
-  RegistrationReport report = registerSurfaces(problem);
-  if (report.hasConverged()) {
-    motion_.correct(report.target_T_source, report.covariance);
-  }
-  return report;
+  problem.sweep = sweepDependence(sweep);
+  problem.locked = settings_.locked;
+  problem.threads = settings_.threads;
+  return problem;
 }
 
-void Track::insert(const std::vector<ScanPoint>& points, const SE3& pose, const Vector6& sweep_twist)
+/// Distortion Compensation, first stage (Eq. 3 and 4): with the motion that was predicted; or with what the pose makes
+/// of it.
+SweepDependence Track::sweepDependence(const Sweep& sweep) const
 {
-  const MovingSensor sensor(pose, sweep_twist);
-  for (const ScanPoint& point : points) {
-    map_->insert(sensor.at(point), point.laser);
+  SweepDependence dependence;
+  dependence.twist = sweep.fraction * motion_.velocity();
+  if (settings_.compensation == CompensationMode::iterative) {
+    dependence.twist = sweep.fraction / sweep.periods * log(pose_.middle.inverse() * motion_.pose());
+    dependence.gain = sweep.fraction / sweep.periods * Matrix6(Matrix6::Identity());
+  } else if (settings_.compensation == CompensationMode::continuous) {
+    dependence.gain = sweep.fraction * motion_.velocityPerPose();
+  }
+  return dependence;
+}
+
+/// What a hypothesis is worth: how it explains the sweep, and how little the sensor must have been pushed about.
+void Track::judge(const SurfaceRegistration& registration)
+{
+  const SE3& found = registration.report.target_T_source;
+  Eigen::Matrix<double, 6, 1> off;
+  off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
+  const Eigen::Matrix<double, 6, 6> expected =
+      motion_.poseCovariance() + kResidualsPerIndependentOne * registration.posterior;
+  evidence_ += registration.evidence / kResidualsPerIndependentOne - 0.5 * off.dot(expected.ldlt().solve(off));
+}
+
+/// Mapping Building & Distortion Compensation Update (Eq. 12).
+void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
+{
+  const SE3 last = pose_.middle;
+  const Matrix6 noise = (kNoiseShare * kResidualsPerIndependentOne) * registration.posterior;
+  motion_.correct(registration.report.target_T_source, registration.posterior, noise);
+  pose_ = {motion_.pose(), registration.report.sweep_twist};
+  if (settings_.compensation == CompensationMode::two_stage) {
+    pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
+  }
+  if (sweeps_to_wait_ > 0) {
+    --sweeps_to_wait_;
+  } else if (keeps_map_ && isKeyframe()) {
+    map_->insert(sweep, pose_);
+    keyframe_ = pose_.middle;
   }
 }
 
 bool Track::isKeyframe() const
 {
-  const SE3 moved = keyframe_.inverse() * motion_.pose();
+  const SE3 moved = keyframe_.inverse() * pose_.middle;
   return moved.translation.norm() > kKeyframeSides * side_ || rotationAngle(moved.rotation) > kKeyframeTurn;
 }
 

@@ -4,54 +4,89 @@
 
 #include "map/voxel_pyramid.h"
 #include "motion/motion_estimate.h"
+#include "odometry/sweep.h"
+#include "registration/surface_registration.h"
 
-#include <pcl_floam/filters/scan_points.h>
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/filters/motion_compensation_mode.h>
 
 #include <optional>
 #include <vector>
 
 namespace pcl_floam {
 
-/// One sweep as a track takes it.
-struct TrackedSweep {
-  const std::vector<ScanPoint>* points = nullptr;  ///< all returns
-  double periods = 1.0;                            ///< since the sweep before, > 0
-  double sweep_fraction = 1.0;  ///< duration of the sweep in periods; 0 if its points are of one instant
+struct TrackSettings {
+  CompensationMode compensation = CompensationMode::continuous;
+  DegreesOfFreedom locked = {};
+  double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
+  int threads = 1;
 };
 
-/// The odometry of the surface engine: predict, register, update; points by space, a pyramid of voxels that
-/// remembers lasers, a variance for each correspondence, one estimate of motion.
-///
-/// All lengths follow from the first scan: cells of the side that its returns fill some 2,000 of.
+/// A sweep's place in the world.
+struct SweepPose {
+  SE3 middle;     ///< world_T_sensor at mid-sweep
+  Vector6 twist;  ///< motion during the sweep
+
+  /// At another fraction of the sweep.
+  [[nodiscard]] SE3 at(double fraction) const { return middle * exp((fraction - 0.5) * twist); }
+};
+
+/// Space (all points) and edges (the paper's features), as pyramids of voxels.
+struct TrackMap {
+  TrackMap(double side, const TrackSettings& settings);
+
+  void insert(const Sweep& sweep, const SweepPose& pose);
+
+  VoxelPyramid space;
+  VoxelPyramid edges;
+  double horizon;
+};
+
+/// Predict, register, judge, update.
 class Track {
 public:
-  explicit Track(int threads = 1) : threads_(threads) {}
+  /// \param side m, of the map's finest cells
+  Track(const TrackSettings& settings, double side) : settings_(settings), side_(side) {}
 
-  /// Registers the next sweep. The first one begins the map; its motion is found with the second.
-  RegistrationReport step(const TrackedSweep& sweep);
+  /// Begins at the origin with the first two sweeps, which share one unknown motion: the first is undistorted with
+  /// today's estimate of it, and the second registered with what comes out, again and again, looking less and less far.
+  /// \param velocity per period, to begin with
+  /// \param far      m, that it may be off
+  SurfaceRegistration begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far, int rounds);
 
-  /// At the middle of the last sweep, seen from the first one's.
-  [[nodiscard]] const SE3& pose() const { return motion_.pose(); }
-  [[nodiscard]] const VoxelPyramid* map() const { return map_ ? &*map_ : nullptr; }
+  /// Begins with sweeps whose poses are known, in the order of time.
+  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses);
+
+  /// Begins in a map that was made before, of which the pose is roughly known.
+  SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);
+
+  /// Takes the next sweep.
+  /// \param is_judged whether \ref evidence goes on
+  SurfaceRegistration step(const Sweep& sweep, bool is_judged = false);
+
+  [[nodiscard]] const MotionEstimate& motion() const { return motion_; }
+  [[nodiscard]] const SweepPose& pose() const { return pose_; }
+  [[nodiscard]] double evidence() const { return evidence_; }
+  [[nodiscard]] const std::optional<TrackMap>& map() const { return map_; }
 
 private:
-  void begin(const TrackedSweep& sweep);
-  RegistrationReport findFirstMotion(const TrackedSweep& sweep);
-  RegistrationReport follow(const TrackedSweep& sweep);
-  void insert(const std::vector<ScanPoint>& points, const SE3& pose, const Vector6& sweep_twist);
+  void predict(const Sweep& sweep);
+  void seekAllAround(const Sweep& sweep);
+  [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
+  [[nodiscard]] SweepDependence sweepDependence(const Sweep& sweep) const;
+  SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;
+  void judge(const SurfaceRegistration& registration);
+  void update(const Sweep& sweep, const SurfaceRegistration& registration);
   [[nodiscard]] bool isKeyframe() const;
 
-  int threads_;
-  int sweeps_ = 0;
-  double side_ = 0.0;  // m
-  SpatialSampling sampling_;
-  std::vector<ScanPoint> sample_;
-  std::vector<ScanPoint> first_;
-  double first_fraction_ = 1.0;
-  std::optional<VoxelPyramid> map_;
+  TrackSettings settings_;
+  double side_;
+  std::optional<TrackMap> map_;
+  bool keeps_map_ = true;
+  int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   MotionEstimate motion_;
+  SweepPose pose_;
   SE3 keyframe_;
+  double evidence_ = 0.0;
 };
 
 }  // namespace pcl_floam

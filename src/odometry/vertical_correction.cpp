@@ -6,9 +6,16 @@ namespace pcl_floam {
 
 namespace {
 
-void correct(double sine, double cosine, std::vector<Feature>& features)
+template <typename Point>
+void correct(double degrees, std::vector<Point>& features)
 {
-  for (Feature& f : features) {
+  if (degrees == 0.0) {
+    return;
+  }
+  constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
+  const double sine = std::sin(degrees * kRadPerDegree);
+  const double cosine = std::cos(degrees * kRadPerDegree);
+  for (Point& f : features) {
     const double horizontal = std::hypot(f.x, f.y);
     if (horizontal > 0.0) {
       // In the vertical plane through the point, (horizontal, z) turns by the angle.
@@ -24,14 +31,13 @@ void correct(double sine, double cosine, std::vector<Feature>& features)
 
 void correctVerticalAngle(double degrees, FeatureSet& features)
 {
-  if (degrees == 0.0) {
-    return;
-  }
-  constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
-  const double sine = std::sin(degrees * kRadPerDegree);
-  const double cosine = std::cos(degrees * kRadPerDegree);
-  correct(sine, cosine, features.edges);
-  correct(sine, cosine, features.planes);
+  correct(degrees, features.edges);
+  correct(degrees, features.planes);
+}
+
+void correctVerticalAngle(double degrees, std::vector<ScanPoint>& points)
+{
+  correct(degrees, points);
 }
 
 }  // namespace pcl_floam

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <random>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -15,6 +18,16 @@ namespace pcl_floam::test {
 namespace {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
+
+/// These tests are run for each engine.
+OdometryParameters defaults()
+{
+  OdometryParameters parameters;
+#ifdef PCL_FLOAM_TEST_SURFACES
+  parameters.engine = OdometryEngine::surfaces;
+#endif
+  return parameters;
+}
 
 /// `world_T_sensor` at a time in periods.
 using Path = std::function<SE3(double)>;
@@ -60,7 +73,7 @@ constexpr int kScans = 18;
 
 TEST(Odometry, RecoversASteadyMotionFromItsFirstScan)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < kScans; ++k) {
     const OdometryReport& report = odometry.track(sweep(steadyPath, k));
     EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
@@ -77,7 +90,7 @@ TEST(Odometry, RecoversAnAcceleratedMotion)
   const std::array<std::pair<CompensationMode, double>, 3> limits = {
       {{CompensationMode::two_stage, 0.07}, {CompensationMode::iterative, 0.03}, {CompensationMode::continuous, 0.03}}};
   for (const auto& [mode, limit] : limits) {
-    OdometryParameters parameters;
+    OdometryParameters parameters = defaults();
     parameters.compensation = mode;
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
@@ -92,7 +105,7 @@ TEST(Odometry, CompensationIsWorthIt)
 {
   double worst[2] = {0.0, 0.0};
   for (const CompensationMode mode : {CompensationMode::none, CompensationMode::two_stage}) {
-    OdometryParameters parameters;
+    OdometryParameters parameters = defaults();
     parameters.compensation = mode;
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
@@ -107,7 +120,7 @@ TEST(Odometry, CompensationIsWorthIt)
 TEST(Odometry, PosesAreThoseOfTheNamedInstant)
 {
   for (const PoseInstant instant : {PoseInstant::start, PoseInstant::middle, PoseInstant::end}) {
-    OdometryParameters parameters;
+    OdometryParameters parameters = defaults();
     parameters.pose_instant = instant;
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
@@ -124,7 +137,7 @@ TEST(Odometry, PosesAreThoseOfTheNamedInstant)
 /// All bits of the poses and of the map of a short run.
 std::vector<double> resultOf(const std::vector<Cloud>& scans, int threads)
 {
-  OdometryParameters parameters;
+  OdometryParameters parameters = defaults();
   parameters.threads = threads;
   parameters.keyframe.translation = 0.0;  // so many keyframes that the map also forgets
   Odometry<PointXYZIRT> odometry(parameters);
@@ -175,8 +188,8 @@ TEST(Odometry, ObjectsInThreadsOfTheirOwnDoNotDisturbEachOther)
 
 TEST(Odometry, ThreadsMayTakeTurnsAndAMoveKeepsTheState)
 {
-  Odometry<PointXYZIRT> here;
-  Odometry<PointXYZIRT> moving;
+  Odometry<PointXYZIRT> here(defaults());
+  Odometry<PointXYZIRT> moving(defaults());
   for (int k = 0; k < 7; ++k) {
     const Cloud scan = sweep(acceleratedPath, k);
     here.track(scan);
@@ -190,12 +203,12 @@ TEST(Odometry, ThreadsMayTakeTurnsAndAMoveKeepsTheState)
 
 TEST(Odometry, ACopyContinuesIdentically)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < 4; ++k) {
     odometry.track(sweep(acceleratedPath, k));
   }
   Odometry<PointXYZIRT> copy(odometry);
-  Odometry<PointXYZIRT> assigned;
+  Odometry<PointXYZIRT> assigned(defaults());
   assigned = odometry;
   for (int k = 4; k < 8; ++k) {
     odometry.track(sweep(acceleratedPath, k));  // first the one, then the others: they share nothing
@@ -210,7 +223,7 @@ TEST(Odometry, ACopyContinuesIdentically)
 
 TEST(Odometry, PredictsOverABlindScanAndTracksAgain)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < kScans; ++k) {
     Cloud scan = sweep(steadyPath, k);
     const bool blind = k == 8 || k == 9;
@@ -231,7 +244,7 @@ TEST(Odometry, PredictsOverABlindScanAndTracksAgain)
 
 TEST(Odometry, KeepsGoingOverMissingScans)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < kScans; ++k) {
     const bool missing = k == 6 || k == 7 || k == 12;
     const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(steadyPath, k));
@@ -243,7 +256,7 @@ TEST(Odometry, KeepsGoingOverMissingScans)
 TEST(Odometry, StampsTellOfAGap)
 {
   // Three sweeps were never delivered, and nobody said so: the stamps do.
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < kScans; ++k) {
     if (k < 8 || k > 10) {
       EXPECT_NE(odometry.track(sweep(steadyPath, k), 100.0 + 0.1 * k).state, TrackingState::predicted);
@@ -254,7 +267,7 @@ TEST(Odometry, StampsTellOfAGap)
 
 TEST(Odometry, StartsWithTheFirstUsableScan)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   EXPECT_EQ(odometry.track(Cloud()).state, TrackingState::not_started);
   EXPECT_EQ(odometry.trackMissing().state, TrackingState::not_started);
   Cloud blank = sweep(steadyPath, 0);
@@ -273,7 +286,7 @@ TEST(Odometry, StartsWithTheFirstUsableScan)
 
 TEST(Odometry, ASecondBlindScanDoesNotHarmTheStart)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   odometry.track(sweep(steadyPath, 0));
   EXPECT_EQ(odometry.trackMissing().state, TrackingState::predicted);
   for (int k = 2; k < 10; ++k) {
@@ -284,8 +297,8 @@ TEST(Odometry, ASecondBlindScanDoesNotHarmTheStart)
 
 TEST(Odometry, ResetStartsAnewAtAPose)
 {
-  Odometry<PointXYZIRT> odometry;
-  Odometry<PointXYZIRT> fresh;
+  Odometry<PointXYZIRT> odometry(defaults());
+  Odometry<PointXYZIRT> fresh(defaults());
   for (int k = 0; k < 5; ++k) {
     odometry.track(sweep(acceleratedPath, k));
   }
@@ -306,8 +319,8 @@ TEST(Odometry, IsAsPreciseFarFromTheOrigin)
   const Eigen::Matrix3d heading = expSO3(Eigen::Vector3d(0.0, 0.0, 0.7));
   const SE3 at_origin(heading, Eigen::Vector3d::Zero());
   const SE3 far_away(heading, Eigen::Vector3d(1e6, -1e6, 100.0));
-  Odometry<PointXYZIRT> near;
-  Odometry<PointXYZIRT> far;
+  Odometry<PointXYZIRT> near(defaults());
+  Odometry<PointXYZIRT> far(defaults());
   near.reset(at_origin);
   far.reset(far_away);
   for (int k = 0; k < kScans; ++k) {
@@ -322,7 +335,7 @@ TEST(Odometry, IsAsPreciseFarFromTheOrigin)
 
 TEST(Odometry, ASensorAtRestStaysAtRest)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   const Cloud scan = sweep([](double) { return SE3(); }, 0);
   for (int k = 0; k < 5; ++k) {
     odometry.track(scan);
@@ -332,9 +345,29 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
   }
 }
 
+#ifdef PCL_FLOAM_TEST_SURFACES
+/// As of a lidar that has none: x, y, z alone, in any order. Each scan is of one instant.
+TEST(Odometry, NeedsNoScanLines)
+{
+  std::mt19937 random(5);
+  Odometry<pcl::PointXYZ> odometry(defaults());
+  for (int k = 0; k < 8; ++k) {
+    pcl::PointCloud<pcl::PointXYZ> scan;
+    for (const PointXYZIRT& point : sweep([](double t) { return steadyPath(std::floor(t)); }, k)) {
+      scan.push_back(pcl::PointXYZ(point.x, point.y, point.z));
+    }
+    std::shuffle(scan.begin(), scan.end(), random);
+    const OdometryReport& report = odometry.track(scan);
+    EXPECT_EQ(report.scan_lines, 0U);
+    EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
+    EXPECT_LT((odometry.pose().translation - steadyPath(k).translation).norm(), 0.05) << "scan " << k;
+  }
+}
+#endif
+
 TEST(Odometry, LocalizesInAMapMadeBefore)
 {
-  Odometry<PointXYZIRT> mapping;
+  Odometry<PointXYZIRT> mapping(defaults());
   for (int k = 0; k < kScans; ++k) {
     mapping.track(sweep(steadyPath, k));
   }
@@ -343,7 +376,7 @@ TEST(Odometry, LocalizesInAMapMadeBefore)
     return SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 0.4, 0.1)) * acceleratedPath(t + 3.0);
   };
   for (const MapUse use : {MapUse::frozen, MapUse::kept_current}) {
-    Odometry<PointXYZIRT> odometry;
+    Odometry<PointXYZIRT> odometry(defaults());
     const SE3 guess = map_T_world * otherPath(1.0) * exp((Vector6() << 0.5, -0.4, 0.2, 0.02, -0.03, 0.08).finished());
     odometry.localizeIn(mapping.map(), guess, use);
     for (int k = 0; k < kScans; ++k) {
@@ -360,19 +393,19 @@ TEST(Odometry, LocalizesInAMapMadeBefore)
 
 TEST(Odometry, AMapToLocalizeInMustHoldSomething)
 {
-  Odometry<PointXYZIRT> odometry;
+  Odometry<PointXYZIRT> odometry(defaults());
   EXPECT_THROW(odometry.localizeIn(KeyframeVoxelMap(), SE3()), std::invalid_argument);
 }
 
 TEST(Odometry, SettingsOutOfRangeAreRefused)
 {
-  OdometryParameters parameters;
+  OdometryParameters parameters = defaults();
   parameters.threads = 0;
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
-  parameters = {};
+  parameters = defaults();
   parameters.map.horizon = -1.0;
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
-  parameters = {};
+  parameters = defaults();
   parameters.registration.kernel_scale = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
 }

@@ -1,96 +1,104 @@
-// The surface engine's odometry on real drives; skipped, and saying so, where they are not there.
-#include "odometry/track.h"
+// Tracks and what is judged by their evidence, on sweeps of a furnished room.
+#include "odometry/tracker.h"
 
-#include <pcl_floam/evaluation/trajectory_metrics.h>
-#include <pcl_floam/filters/sensor_model.h>
-#include <pcl_floam/io/scan_source.h>
-#include <pcl_floam/io/trajectory.h>
+#include "odometry/scan_preparation.h"
+#include "support/synthetic_cloud.h"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-
-namespace pcl_floam {
+namespace pcl_floam::test {
 namespace {
 
-std::filesystem::path dataFolder(const std::string& name)
+SE3 path(double t)
 {
-  const char* given = std::getenv("PCL_FLOAM_DATA");
-  return std::filesystem::path(given != nullptr ? given : PCL_FLOAM_DEFAULT_DATA) / name;
+  return exp(Vector6(t * (Vector6() << 0.3, 0.02, 0.0, 0.0, 0.0, 0.03).finished()));
 }
 
-std::vector<SE3> trackAll(const std::filesystem::path& folder, std::size_t most, int threads)
+PreparedScan prepared(int k)
 {
-  const ScanSource scans(folder);
-  Track track(threads);
-  std::vector<SE3> poses;
-  pcl::PCLPointCloud2 scan;
-  ScanLines lines;
-  std::vector<ScanPoint> points;
-  for (std::size_t i = 0; i < std::min(scans.size(), most); ++i) {
-    scans.read(i, scan);
-    const CloudView view = viewOf(scan);
-    findScanLines(view, SensorModel(), ScanLineSource::automatic, lines);
-    const ScanTiming timing = findScanTiming(view, lines);
-    collectPoints(view, lines, timing, 0.5, 120.0, points);
-    const RegistrationReport report = track.step({&points, 1.0, timing.valid() ? 1.0 : 0.0});
-    EXPECT_TRUE(i == 0 || report.hasConverged()) << "scan " << i;
-    poses.push_back(track.pose());
-  }
-  return poses;
+  const auto cloud = toCloud(sweepRoom(Room(), Lidar(), [k](double fraction) { return path(k + fraction); }));
+  PreparedScan scan;
+  scan.findStructure(viewOf(cloud), OdometryParameters(), 0.0);
+  scan.takePoints(viewOf(cloud), OdometryParameters());
+  return scan;
+}
+
+double error(const SE3& pose, int k)
+{
+  const SE3 truth = path(0.5).inverse() * path(k + 0.5);
+  return (pose.translation - truth.translation).norm();
 }
 
 }  // namespace
 
-TEST(Track, FollowsARealCar)
+TEST(Tracker, FollowsAMotionThatItFindsFromTwoSweeps)
 {
-  const std::filesystem::path folder = dataFolder("kitti_raw_0001");
-  if (!std::filesystem::exists(folder)) {
-    GTEST_SKIP() << "SKIPPED: no real data at " << folder;
-  }
-  const std::vector<SE3> poses = trackAll(folder / "velodyne", 60, 1);
-  std::vector<SE3> truth;
-  for (const StampedPose& pose : readTrajectory(folder / "poses.txt")) {
-    truth.push_back(pose.world_T_sensor);
-  }
-  truth.resize(poses.size());
-  // The floor of the truth is 0.055 m; the sensor's vertical angle is left as it is.
-  EXPECT_LT(absoluteTrajectoryError(poses, truth).rms, 0.15);
-}
-
-TEST(Track, ARealSensorAtRestStaysThere)
-{
-  const std::filesystem::path folder = dataFolder("vlp16_static");
-  if (!std::filesystem::exists(folder)) {
-    GTEST_SKIP() << "SKIPPED: no real data at " << folder;
-  }
-  for (const SE3& pose : trackAll(folder / "pcd", 80, 1)) {
-    EXPECT_LT(pose.translation.norm(), 0.02);
+  Tracker tracker({});
+  for (int k = 0; k < 8; ++k) {
+    const PreparedScan scan = prepared(k);
+    const Tracker::Outcome outcome = tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
+    EXPECT_EQ(outcome.registration.report.hasConverged(), k > 0);
+    EXPECT_EQ(tracker.isTracking(), k > 0);
+    if (k > 0) {
+      EXPECT_LT(error(tracker.track().pose().middle, k), 0.02) << k;
+    }
   }
 }
 
-TEST(Track, ThreadsGiveTheSameBits)
+TEST(Tracker, ASweepThatFitsNothingChangesNothing)
 {
-  const std::filesystem::path folder = dataFolder("kitti_raw_0001");
-  if (!std::filesystem::exists(folder)) {
-    GTEST_SKIP() << "SKIPPED: no real data at " << folder;
+  Tracker tracker({});
+  for (int k = 0; k < 4; ++k) {
+    const PreparedScan scan = prepared(k);
+    tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
   }
-  const std::vector<SE3> one = trackAll(folder / "velodyne", 6, 1);
-  const std::vector<SE3> three = trackAll(folder / "velodyne", 6, 3);
-  for (std::size_t i = 0; i < one.size(); ++i) {
-    EXPECT_EQ(one[i].translation, three[i].translation);
-    EXPECT_EQ(one[i].rotation, three[i].rotation);
+  const SE3 before = tracker.track().pose().middle;
+  std::vector<ScanPoint> far_off = prepared(4).points;
+  for (ScanPoint& point : far_off) {
+    point.x += 1000.0F;
   }
+  EXPECT_FALSE(tracker.step(far_off, {}, 1.0, 1.0).registration.report.hasConverged());
+  EXPECT_EQ(tracker.track().pose().middle.translation, before.translation);
+  const PreparedScan scan = prepared(5);
+  EXPECT_TRUE(tracker.step(scan.points, scan.edges, 2.0, scan.sweep_fraction).registration.report.hasConverged());
+  EXPECT_LT(error(tracker.track().pose().middle, 5), 0.02);
 }
 
-TEST(Track, AnEmptySweepIsToldAndChangesNothing)
+TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
 {
-  Track track;
-  const std::vector<ScanPoint> nothing;
-  EXPECT_EQ(track.step({&nothing, 1.0, 1.0}).termination, Termination::too_few_features);
-  EXPECT_EQ(track.map(), nullptr);
+  SpatialSampling sampling;
+  std::vector<Sweep> sweeps;
+  std::vector<SE3> poses;
+  double side = 0.0;
+  for (int k = 0; k < 5; ++k) {
+    const PreparedScan scan = prepared(k);
+    side = side > 0.0 ? side : sampling.sideFor(scan.points, 2000);
+    Sweep sweep;
+    sampling.sample(scan.points, 0.3 * side, sweep.dense);
+    sampling.sample(sweep.dense, side, sweep.sample);
+    sweep.edges = scan.edges;
+    sweeps.push_back(sweep);
+    poses.push_back(path(0.5).inverse() * path(k + 0.5));
+  }
+  const Sweep last = sweeps.back();
+  sweeps.pop_back();
+  poses.pop_back();
+  Track track({}, side);
+  track.begin(sweeps, poses);
+  EXPECT_TRUE(track.step(last).report.hasConverged());
+  EXPECT_LT(error(track.pose().middle, 4), 0.01);
+
+  // And backwards, with time running the other way.
+  Track back({}, side);
+  std::vector<Sweep> reversed = {last, sweeps[3]};
+  for (Sweep& sweep : reversed) {
+    sweep.fraction = -sweep.fraction;
+  }
+  back.begin(reversed, {path(0.5).inverse() * path(4.5), poses[3]});
+  Sweep before = sweeps[2];
+  before.fraction = -before.fraction;
+  EXPECT_TRUE(back.step(before).report.hasConverged());
+  EXPECT_LT(error(back.pose().middle, 2), 0.02);
 }
 
-}  // namespace pcl_floam
+}  // namespace pcl_floam::test

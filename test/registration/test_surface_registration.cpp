@@ -21,7 +21,8 @@ public:
   explicit Corner(int walls) : walls_(walls) {}
 
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       surfaces[i] = Surface();
@@ -74,8 +75,7 @@ std::vector<ScanPoint> sweepOf(const MovingSensor& sensor, std::size_t count)
 SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const SurfaceSearch& target)
 {
   SurfaceProblem problem;
-  problem.points = &points;
-  problem.target = &target;
+  problem.scan = {&points, &target};
   problem.guess_covariance = 0.1 * Matrix6(Matrix6::Identity());
   problem.guess_is_prior = false;
   return problem;
@@ -109,7 +109,8 @@ TEST(SurfaceRegistration, FindsAKnownPose)
   for (int i = 0; i < 10; ++i) {
     const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
     const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
-    const RegistrationReport report = registerSurfaces(problemOf(points, Corner(3)));
+    const Corner corner(3);
+    const RegistrationReport report = registerSurfaces(problemOf(points, corner)).report;
     ASSERT_TRUE(report.hasConverged());
     EXPECT_LT(distance(report.target_T_source, truth), 1e-4);
   }
@@ -124,11 +125,15 @@ TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
     const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, log(earlier.inverse() * truth)), 900);
     const Corner corner(3);
     SurfaceProblem problem = problemOf(points, corner);
-    EXPECT_GT(distance(registerSurfaces(problem).target_T_source, truth), 1e-3) << "the sweep's motion must matter";
+    EXPECT_GT(distance(registerSurfaces(problem).report.target_T_source, truth), 1e-3)
+        << "the sweep's motion must matter";
     problem.guess = earlier;
-    problem.earlier_pose = earlier;
-    problem.sweep_per_motion = 1.0;
-    EXPECT_LT(distance(registerSurfaces(problem).target_T_source, truth), 2e-4);
+    problem.sweep.gain.setIdentity();
+    for (int again = 0; again < 3; ++again) {  // the dependence on the pose is linear about the guess
+      problem.sweep.twist = log(earlier.inverse() * problem.guess);
+      problem.guess = registerSurfaces(problem).report.target_T_source;
+    }
+    EXPECT_LT(distance(problem.guess, truth), 3e-4);
   }
 }
 
@@ -139,7 +144,7 @@ TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
   const Corner floor(1);
   SurfaceProblem problem = problemOf(points, floor);
   problem.guess_is_prior = true;
-  const RegistrationReport report = registerSurfaces(problem);
+  const RegistrationReport report = registerSurfaces(problem).report;
   ASSERT_TRUE(report.hasConverged());
   EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 1e-3);
   EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 1e-3);
@@ -147,6 +152,31 @@ TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
   EXPECT_NEAR(report.information(5, 5), 0.0, 1e-9);
   EXPECT_NEAR(report.covariance(0, 0), 0.1, 0.02);
   EXPECT_LT(report.covariance(2, 2), 1e-4);
+}
+
+TEST(SurfaceRegistration, LockedDegreesOfFreedomKeepTheGuess)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner corner(3);
+  SurfaceProblem problem = problemOf(points, corner);
+  problem.locked = kPlanarMotion;
+  const RegistrationReport report = registerSurfaces(problem).report;
+  EXPECT_EQ(report.target_T_source.translation.z(), 0.0);
+  EXPECT_LT((report.target_T_source.translation - truth.translation).head<2>().norm(), 2e-3);
+  EXPECT_EQ(report.covariance(2, 2), 0.0);
+}
+
+TEST(SurfaceRegistration, EvidenceIsHighestAtTheTruth)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner corner(3);
+  SurfaceProblem problem = problemOf(points, corner);
+  problem.wants_evidence = true;
+  const double found = registerSurfaces(problem).evidence;
+  problem.locked = {true, true, true, true, true, true};
+  EXPECT_GT(found, registerSurfaces(problem).evidence + 100.0);
 }
 
 TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
@@ -157,7 +187,8 @@ TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
     points[i].y += 0.7F;
     points[i].z += 0.7F;
   }
-  EXPECT_LT(registerSurfaces(problemOf(points, Corner(3))).target_T_source.translation.norm(), 2e-3);
+  const Corner corner(3);
+  EXPECT_LT(registerSurfaces(problemOf(points, corner)).report.target_T_source.translation.norm(), 2e-3);
 }
 
 TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
@@ -169,10 +200,10 @@ TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
   }
   SurfaceProblem problem = problemOf(points, map);
   problem.guess.translation.x() = 0.1;
-  const RegistrationReport one = registerSurfaces(problem);
+  const RegistrationReport one = registerSurfaces(problem).report;
   for (const int threads : {2, 3, 8}) {
     problem.threads = threads;
-    const RegistrationReport other = registerSurfaces(problem);
+    const RegistrationReport other = registerSurfaces(problem).report;
     EXPECT_EQ(one.target_T_source.rotation, other.target_T_source.rotation);
     EXPECT_EQ(one.target_T_source.translation, other.target_T_source.translation);
     EXPECT_EQ(one.covariance, other.covariance);
@@ -183,9 +214,10 @@ TEST(SurfaceRegistration, TellsWhenThereIsNothingToRegisterWith)
 {
   const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
   const VoxelPyramid nothing(0.3);
-  EXPECT_EQ(registerSurfaces(problemOf(points, nothing)).termination, Termination::empty_target);
+  EXPECT_EQ(registerSurfaces(problemOf(points, nothing)).report.termination, Termination::empty_target);
   const std::vector<ScanPoint> few(points.begin(), points.begin() + 10);
-  EXPECT_EQ(registerSurfaces(problemOf(few, Corner(3))).termination, Termination::too_few_correspondences);
+  const Corner corner(3);
+  EXPECT_EQ(registerSurfaces(problemOf(few, corner)).report.termination, Termination::too_few_correspondences);
 }
 
 }  // namespace pcl_floam

@@ -183,9 +183,10 @@ TEST_F(OdometryTool, HelpNamesEveryChoice)
 TEST_F(OdometryTool, EveryChoiceRuns)
 {
   for (const char* option :
-       {"--compensation none", "--compensation loam", "--solver ceres", "--search kdtree", "--weights printed",
-        "--weights inverted", "--weight-normalization sum-one", "--kernel none", "--smoothness vector-sum",
-        "--pose-instant start", "--threads 2", "--scan-lines elevation-clusters", "--timing none", "--quiet"}) {
+       {"--engine surfaces", "--compensation none", "--compensation loam", "--solver ceres", "--search kdtree",
+        "--weights printed", "--weights inverted", "--weight-normalization sum-one", "--kernel none",
+        "--smoothness vector-sum", "--pose-instant start", "--threads 2", "--scan-lines elevation-clusters",
+        "--timing none", "--quiet"}) {
     const Outcome outcome = odometry(std::string("scans -o result --plot none --max-scans 3 ") + option);
     EXPECT_EQ(outcome.status, 0) << option << ": " << outcome.err;
     EXPECT_EQ(poses().size(), 3U) << option;

@@ -39,9 +39,12 @@ public:
 
 private:
   [[nodiscard]] bool isFirst(const ScanPoint& point, float inverse_side);
-  void forget(std::size_t expected);
+  void forget();
+  void grow();
+  [[nodiscard]] std::size_t placeOf(std::uint64_t key) const;
 
   std::vector<std::uint64_t> table_;
+  std::size_t used_ = 0;
   std::uint64_t last_ = 0;
 };
 

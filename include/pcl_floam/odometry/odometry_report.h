@@ -54,6 +54,8 @@ struct OdometryReport {
   /// the pose away from where the rest of the scene has it, until the two have agreed in several scans; and where all
   /// of them could not be registered. Scans of which the spread features could not be registered have all, in between.
   bool crowded = false;
+  /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
+  double explained = 0.0;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
   /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map

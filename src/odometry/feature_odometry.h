@@ -1,7 +1,8 @@
-/// \file scan_tracking.h
-/// The stages of the odometry, scan by scan, and what they remember.
+/// \file feature_odometry.h
+/// The odometry by features: its stages, scan by scan, and what they remember.
 #pragma once
 
+#include "motion/scan_clock.h"
 #include "odometry/constant_velocity.h"
 #include "odometry/first_motion.h"
 #include "odometry/motion_model.h"
@@ -44,8 +45,9 @@ inline double typicalRange(const FeatureSet& features)
 
 /// Within the pipeline, every pose is the sensor's at \ref kReference of its sweep. Other instants are derived when
 /// poses are given out.
-struct OdometryPipeline::Impl {
-  explicit Impl(const OdometryParameters& p) : parameters(p), map(p.map), clock(p.scan_period), motion(p.compensation)
+struct FeatureOdometry {
+  explicit FeatureOdometry(const OdometryParameters& p)
+      : parameters(p), map(p.map), clock(p.scan_period), motion(p.compensation)
   {
     // Five points of a finer map lie closer together.
     constexpr double kVoxelsWide = 0.25;
@@ -324,6 +326,21 @@ struct OdometryPipeline::Impl {
     start();
     report.reason = std::string("started again, since the first scan was never matched: ") + reason;
     return report;
+  }
+
+  const OdometryReport& miss(std::optional<double> stamp)
+  {
+    beginScan(0, stamp);
+    return seeNothing("the scan is missing");
+  }
+
+  void localizeIn(KeyframeVoxelMap given, MapUse use)
+  {
+    map = std::move(given);
+    prior_map = use;
+    started = true;
+    motion.begin(initial_pose);
+    world_T_keyframe = initial_pose;
   }
 
   /// A scan without features, or none at all.

@@ -1,0 +1,31 @@
+/// \file scan_clock.h
+/// How far apart scans are, from their stamps.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+namespace pcl_floam {
+
+/// How far apart scans are, in periods of the sensor: 1 from one scan to the next, 2 when one is missing.
+class ScanClock {
+public:
+  /// \param period s; 0 to take it from the stamps
+  explicit ScanClock(double period = 0.0) : given_period_(period) {}
+
+  /// Periods since the last scan: 1 without stamps, 0 for a stamp that does not advance. A hundred and more, forwards
+  /// or back, mean that the clock was set: that is 1, too.
+  double tick(std::optional<double> stamp);
+
+  /// Seconds from sweep to sweep; 0 while unknown.
+  [[nodiscard]] double period() const;
+
+private:
+  void remember(double elapsed);
+
+  double given_period_;
+  std::optional<double> last_stamp_;
+  std::vector<double> recent_;  ///< the last differences of stamps
+};
+
+}  // namespace pcl_floam

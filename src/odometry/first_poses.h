@@ -1,0 +1,49 @@
+/// \file first_poses.h
+/// The poses that were given out before it was decided how the sensor began to move, and what they should have been.
+#pragma once
+
+#include "odometry/track.h"
+
+#include <pcl_floam/odometry/odometry_report.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace pcl_floam {
+
+/// Scans since the first one: those that were registered, and those between that told nothing.
+class FirstPoses {
+public:
+  void begin(const SE3& initial_pose);
+  /// A scan comes, so many periods after the last one that was registered.
+  void elapse(double periods) { periods_ = periods; }
+  void add() { at_.push_back({++sweep_, 0.0}); }
+  void miss();
+  void give(const SE3& world_T_sensor);
+
+  /// What all scans before this one should have been given; nothing if that is what they were given, to 1 mm.
+  std::vector<SE3> correct(const std::vector<SweepPose>& poses, const SE3& world_T_track, double instant);
+  /// Whether that was much.
+  [[nodiscard]] bool jumped() const { return jumped_; }
+
+private:
+  struct Place {
+    std::size_t sweep = 0;
+    double periods_after = 0.0;
+  };
+
+  bool open_ = false;
+  bool jumped_ = false;
+  double periods_ = 0.0;
+  std::size_t sweep_ = 0;
+  std::vector<Place> at_;
+  std::vector<SE3> given_;
+};
+
+/// A covariance in other axes.
+[[nodiscard]] Matrix6 turned(const Matrix6& covariance, const SE3& world_T_track);
+
+/// The registration's result in the world's axes.
+void turnIntoWorld(OdometryReport& report, const SE3& world_T_track);
+
+}  // namespace pcl_floam

@@ -1,0 +1,42 @@
+#include "odometry/scan_preparation.h"
+
+#include "odometry/vertical_correction.h"
+
+#include <pcl_floam/filters/feature_extractor.h>
+
+#include <algorithm>
+
+namespace pcl_floam {
+
+void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
+{
+  findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+  timing = findScanTiming(scan, lines, parameters.timing_source, parameters.rotation, parameters.threads);
+  sweep_fraction = timing.valid() && parameters.compensation != CompensationMode::none ? 1.0 : 0.0;
+  if (timing.duration > 0.0 && period > 0.0) {
+    sweep_fraction *= std::min(1.0, timing.duration / period);
+  }
+}
+
+void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
+{
+  collectPoints(scan, lines, timing, static_cast<double>(parameters.features.min_range),
+                static_cast<double>(parameters.features.max_range), points);
+  extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);
+  correctVerticalAngle(parameters.vertical_correction, points);
+  correctVerticalAngle(parameters.vertical_correction, features);
+  line_of_point_.assign(scan.size, 0);
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
+      line_of_point_[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])] =
+          static_cast<std::uint32_t>(m);
+    }
+  }
+  edges.clear();
+  for (const Feature& edge : features.edges) {
+    edges.push_back({edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F,
+                     line_of_point_[static_cast<std::size_t>(edge.index)], edge.index});
+  }
+}
+
+}  // namespace pcl_floam

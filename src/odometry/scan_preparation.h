@@ -1,0 +1,30 @@
+/// \file scan_preparation.h
+/// What the odometry takes from one scan (the paper's "Sensor Model and Feature Extraction").
+#pragma once
+
+#include <pcl_floam/filters/features.h>
+#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/odometry/odometry_parameters.h>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// Kept from scan to scan: its memory is used again.
+struct PreparedScan {
+  ScanLines lines;
+  ScanTiming timing;
+  double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
+  FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
+  std::vector<ScanPoint> points;  ///< all returns
+  std::vector<ScanPoint> edges;   ///< E_k
+
+  /// \param period s, from sweep to sweep; 0 if it is not known
+  void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
+  void takePoints(const CloudView& scan, const OdometryParameters& parameters);
+
+private:
+  std::vector<std::uint32_t> line_of_point_;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,21 @@
+/// \file sweep.h
+/// One sweep as the odometry takes it.
+#pragma once
+
+#include <pcl_floam/filters/scan_points.h>
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// The points of one sweep, in the sensor's frame, each at the instant of its own measurement.
+struct Sweep {
+  std::vector<ScanPoint> dense;   ///< what enters the map: no closer together than its cells tell apart
+  std::vector<ScanPoint> sample;  ///< what is registered: one of each of the map's finest cells
+  std::vector<ScanPoint> edges;   ///< the paper's edge features
+  double periods = 1.0;           ///< since the sweep before, > 0
+  /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
+  double fraction = 1.0;
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,273 @@
+#include "odometry/tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Cells that the first sweep fills, per root of its points: so many points are registered, some 2,000 of a sensor with
+/// 16 lasers, and 4,000 of one with 64.
+constexpr double kCellsPerRoot = 12.0;
+/// Points of one sweep enter the map no closer together than this part of its finest cells' side.
+constexpr double kMapSpacing = 0.3;
+/// Sweeps until it is decided how it began.
+constexpr std::size_t kFirstSweeps = 12;
+/// m: a motion between two sweeps that is known no better is none that is known.
+constexpr double kAmbiguous = 0.03;
+
+/// Along which the pose is known least, and its variance there.
+struct LeastKnown {
+  Eigen::Vector3d direction;
+  double variance = 0.0;
+};
+
+LeastKnown leastKnown(const Matrix6& information)
+{
+  const Eigen::Matrix<double, 6, 6> h = information;
+  const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
+                                                                    h.bottomRightCorner<3, 3>().inverse() *
+                                                                    h.bottomLeftCorner<3, 3>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(translation);
+  return {eigen.eigenvectors().col(0), kResidualsPerIndependentOne / std::max(eigen.eigenvalues()[0], 1e-9)};
+}
+
+}  // namespace
+
+void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
+                         const SE3& guess, bool keeps_map)
+{
+  prior_map_ = {{space, edges, guess, keeps_map}};
+}
+
+Sweep Tracker::sampled(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
+                       double fraction)
+{
+  Sweep sweep;
+  if (side_ == 0.0) {
+    const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
+    side_ = sampling_.sideFor(points, static_cast<std::size_t>(cells));
+  }
+  sampling_.sample(points, kMapSpacing * side_, sweep.dense);
+  sampling_.sample(sweep.dense, side_, sweep.sample);
+  sweep.edges = edges;
+  sweep.periods = periods;
+  sweep.fraction = fraction;
+  return sweep;
+}
+
+Tracker::Outcome Tracker::step(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges,
+                               double periods, double fraction)
+{
+  Sweep sweep = sampled(points, edges, periods, fraction);
+  if (!isTracking()) {
+    return begin(std::move(sweep));
+  }
+  Outcome outcome;
+  if (is_open_) {
+    followUp(sweep, outcome);
+    return outcome;
+  }
+  hypotheses_[0].poses.clear();
+  outcome.registration = hypotheses_[0].track.step(sweep);
+  return outcome;
+}
+
+Tracker::Outcome Tracker::begin(Sweep sweep)
+{
+  constexpr int kMostFailures = 5;  // a bad first sweep must not hold up the rest for ever
+  if (!prior_map_.empty()) {
+    return beginInPriorMap(sweep);
+  }
+  if (first_.sample.empty() || failed_ >= kMostFailures) {
+    failed_ = 0;
+    first_ = std::move(sweep);
+    return {};
+  }
+  Outcome outcome = findFirstMotion(sweep);
+  failed_ = isTracking() ? 0 : failed_ + 1;
+  return outcome;
+}
+
+Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
+{
+  const PriorMap& prior = prior_map_[0];
+  TrackMap map(side_, settings_);
+  // Many sweeps made such a map: no point of it is of one laser's pattern.
+  std::uint32_t laser = 0;
+  for (const Eigen::Vector3d& point : prior.space) {
+    map.space.insert(point, laser++);
+  }
+  for (const Eigen::Vector3d& point : prior.edges) {
+    map.edges.insert(point, laser++);
+  }
+  Hypothesis hypothesis{Track(settings_, side_), {}};
+  Outcome outcome;
+  outcome.registration = hypothesis.track.begin(sweep, std::move(map), prior.guess, prior.keeps_map);
+  if (outcome.registration.report.hasConverged()) {
+    hypotheses_.push_back(std::move(hypothesis));
+    prior_map_.clear();
+  }
+  return outcome;
+}
+
+/// From rest, near and far; and, if that leaves a direction open, along it.
+Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
+{
+  constexpr double kNear = 0.5;      // m
+  constexpr double kFar = 2.0;       // m
+  constexpr double kFarthest = 4.0;  // m: 40 m/s at ten sweeps a second
+  constexpr int kNearRounds = 3;
+  constexpr int kFarRounds = 6;
+  constexpr std::size_t kMost = 4;
+  Outcome outcome;
+  Track rest(settings_, side_);
+  outcome.registration = rest.begin(first_, sweep, Vector6::Zero(), kNear, kNearRounds);
+  suppose(sweep, Vector6::Zero(), kNear, kNearRounds);
+  suppose(sweep, Vector6::Zero(), kFar, kFarRounds);
+  if (!outcome.registration.report.hasConverged()) {
+    hypotheses_.clear();
+    return outcome;
+  }
+  const LeastKnown open = leastKnown(outcome.registration.report.information);
+  if (open.variance > kAmbiguous * kAmbiguous) {
+    for (double way = kNear; way <= kFarthest; way += kNear) {
+      for (const double sign : {1.0, -1.0}) {
+        Vector6 velocity = Vector6::Zero();
+        velocity.head<3>() = sign * way / sweep.periods * open.direction;
+        suppose(sweep, velocity, kNear, kNearRounds);
+      }
+    }
+  }
+  std::sort(hypotheses_.begin(), hypotheses_.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.track.evidence() > b.track.evidence(); });
+  hypotheses_.erase(hypotheses_.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, hypotheses_.size())),
+                    hypotheses_.end());
+  is_open_ = hypotheses_.size() > 1 || open.variance > kAmbiguous * kAmbiguous;
+  if (is_open_) {
+    kept_ = {first_, sweep};
+  }
+  first_ = {};
+  outcome.corrected = true;
+  return outcome;
+}
+
+/// Follows the motion that is found from a supposed one, unless it is known already.
+void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds)
+{
+  constexpr double kSame = 0.25;  // m
+  Hypothesis hypothesis{Track(settings_, side_), {}};
+  if (!hypothesis.track.begin(first_, sweep, velocity, far, rounds).report.hasConverged()) {
+    return;
+  }
+  const Vector6 motion = hypothesis.track.motion().velocity();
+  hypothesis.poses = {{SE3(), first_.fraction * motion}, hypothesis.track.pose()};
+  for (Hypothesis& other : hypotheses_) {
+    const Eigen::Vector3d apart = other.track.pose().middle.translation - hypothesis.track.pose().middle.translation;
+    if (apart.norm() < kSame) {
+      if (hypothesis.track.evidence() > other.track.evidence()) {
+        other = std::move(hypothesis);
+      }
+      return;
+    }
+  }
+  hypotheses_.push_back(std::move(hypothesis));
+}
+
+void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
+{
+  std::vector<Hypothesis> left;
+  std::vector<SurfaceRegistration> registrations;
+  std::size_t best = 0;
+  bool best_stays = false;
+  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
+    Hypothesis next = hypotheses_[i];
+    const SurfaceRegistration registration = next.track.step(sweep, true);
+    if (!registration.report.hasConverged()) {
+      outcome.registration = registration;
+      continue;
+    }
+    next.poses.push_back(next.track.pose());
+    if (left.empty() || next.track.evidence() > left[best].track.evidence()) {
+      best = left.size();
+      best_stays = i == best_;
+    }
+    left.push_back(std::move(next));
+    registrations.push_back(registration);
+  }
+  if (left.empty()) {
+    return;
+  }
+  hypotheses_ = std::move(left);
+  best_ = best;
+  kept_.push_back(sweep);
+  outcome.registration = registrations[best];
+  outcome.corrected = !best_stays;
+  if (kept_.size() == kFirstSweeps) {
+    settle();
+    outcome.registration.report.target_T_source = track().pose().middle;
+    outcome.corrected = true;
+  }
+}
+
+/// The best hypothesis stays, its first sweeps where its last ones say they were.
+void Tracker::settle()
+{
+  Hypothesis found = std::move(hypotheses_[best_]);
+  const std::vector<SE3> poses = posesFoundBackwards(found);
+  if (!poses.empty()) {
+    found.track.begin(kept_, poses);
+    found.poses.clear();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const std::size_t next = std::max<std::size_t>(i, 1);
+      const Vector6 velocity = log(poses[next - 1].inverse() * poses[next]) / kept_[next].periods;
+      found.poses.push_back({poses[i], kept_[i].fraction * velocity});
+    }
+  }
+  hypotheses_.clear();
+  hypotheses_.push_back(std::move(found));
+  best_ = 0;
+  is_open_ = false;
+  kept_.clear();
+}
+
+/// Nothing if a sweep cannot be registered.
+std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
+{
+  constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
+  const std::size_t n = kept_.size();
+  const auto backwards = [&](std::size_t k) {
+    Sweep sweep = kept_[k];
+    sweep.periods = k + 1 < n ? kept_[k + 1].periods : 1.0;
+    sweep.fraction = -sweep.fraction;
+    return sweep;
+  };
+  std::vector<Sweep> sweeps;
+  std::vector<SE3> poses(n);
+  std::vector<SE3> last;
+  for (std::size_t k = n; k-- > n - kTrusted;) {
+    poses[k] = found.poses[k].middle;
+    last.push_back(poses[k]);
+    sweeps.push_back(backwards(k));
+  }
+  Track back(settings_, side_);
+  back.begin(sweeps, last);
+  for (std::size_t k = n - kTrusted; k-- > 0;) {
+    if (!back.step(backwards(k)).report.hasConverged()) {
+      return {};
+    }
+    poses[k] = back.pose().middle;
+  }
+  const SE3 first_T_world = poses[0].inverse();
+  for (SE3& pose : poses) {
+    pose = first_T_world * pose;
+  }
+  return poses;
+}
+
+}  // namespace pcl_floam

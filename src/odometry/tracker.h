@@ -1,0 +1,75 @@
+/// \file tracker.h
+/// One or more tracks, judged by one evidence.
+#pragma once
+
+#include "odometry/track.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace pcl_floam {
+
+/// The first two sweeps of an open road hardly tell how the sensor moves. Then several motions are followed for the
+/// first sweeps, each by a track of its own; the one that explains them best stays, and what it has learnt of the
+/// motion goes back to the first sweep. Otherwise there is one track all the time.
+class Tracker {
+public:
+  explicit Tracker(const TrackSettings& settings) : settings_(settings) {}
+
+  /// Sweeps that follow are localised in this map.
+  void localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
+                  const SE3& guess, bool keeps_map);
+
+  struct Outcome {
+    SurfaceRegistration registration;
+    bool corrected = false;  ///< \ref poses are not what they were
+  };
+
+  /// \param points  all returns
+  /// \param periods since the last sweep that was registered
+  Outcome step(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
+               double fraction);
+
+  [[nodiscard]] bool hasBegun() const { return !first_.sample.empty() || !hypotheses_.empty(); }
+  /// Whether a motion is known.
+  [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
+  /// Whether the first poses may yet be corrected.
+  [[nodiscard]] bool isOpen() const { return is_open_; }
+  [[nodiscard]] const Track& track() const { return hypotheses_[best_].track; }
+  /// Of the sweeps since the first one, while \ref isOpen and right after.
+  [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_[best_].poses; }
+
+private:
+  struct Hypothesis {
+    Track track;
+    std::vector<SweepPose> poses;
+  };
+  struct PriorMap {
+    std::vector<Eigen::Vector3d> space, edges;
+    SE3 guess;
+    bool keeps_map = true;
+  };
+
+  [[nodiscard]] Sweep sampled(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
+                              double fraction);
+  Outcome begin(Sweep sweep);
+  Outcome beginInPriorMap(const Sweep& sweep);
+  Outcome findFirstMotion(const Sweep& sweep);
+  void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds);
+  void followUp(const Sweep& sweep, Outcome& outcome);
+  void settle();
+  [[nodiscard]] std::vector<SE3> posesFoundBackwards(const Hypothesis& found) const;
+
+  TrackSettings settings_;
+  SpatialSampling sampling_;
+  double side_ = 0.0;                // m, of the finest cells; 0 until the first sweep
+  std::vector<PriorMap> prior_map_;  // none or one
+  Sweep first_;
+  int failed_ = 0;
+  std::vector<Hypothesis> hypotheses_;
+  std::size_t best_ = 0;
+  bool is_open_ = false;
+  std::vector<Sweep> kept_;  // while open
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,82 @@
+// The clock of the scans.
+#include "motion/scan_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pcl_floam {
+namespace {
+
+/// A clock that has seen scans every 0.1 s up to the time 100.
+ScanClock steadyClock()
+{
+  ScanClock clock;
+  for (int i = -5; i <= 0; ++i) {
+    clock.tick(100.0 + 0.1 * i);
+  }
+  return clock;
+}
+
+TEST(ScanClock, CountsPeriods)
+{
+  ScanClock clock = steadyClock();
+  EXPECT_NEAR(clock.period(), 0.1, 1e-9);
+  EXPECT_NEAR(clock.tick(100.1), 1.0, 1e-9);
+  EXPECT_NEAR(clock.tick(100.4), 3.0, 1e-9);
+  EXPECT_EQ(clock.tick(std::nullopt), 1.0);
+  EXPECT_EQ(clock.tick(std::numeric_limits<double>::quiet_NaN()), 1.0);
+}
+
+TEST(ScanClock, StampsThatDoNotAdvanceAreNoTime)
+{
+  ScanClock clock = steadyClock();
+  EXPECT_EQ(clock.tick(100.0), 0.0);
+  EXPECT_EQ(clock.tick(100.0 + 1e-7), 0.0);  // a motion divided by it would be no velocity
+  EXPECT_EQ(clock.tick(99.8), 0.0);
+  EXPECT_NEAR(clock.tick(99.9), 1.0, 1e-9);
+}
+
+TEST(ScanClock, AClockThatWasSetTellsNothing)
+{
+  for (const double jump : {3600.0, -3600.0, 1e300, -1e300}) {
+    ScanClock clock = steadyClock();
+    EXPECT_EQ(clock.tick(100.0 + jump), 1.0) << jump;
+    EXPECT_NEAR(clock.period(), 0.1, 1e-9) << jump;
+  }
+  ScanClock clock;
+  clock.tick(-std::numeric_limits<double>::max());
+  EXPECT_EQ(clock.tick(std::numeric_limits<double>::max()), 1.0);  // their difference is not finite
+}
+
+TEST(ScanClock, AWrongFirstPeriodIsForgotten)
+{
+  ScanClock clock;
+  clock.tick(0.0);
+  clock.tick(1e-7);
+  for (int i = 1; i <= 4; ++i) {
+    clock.tick(0.1 * i);
+  }
+  EXPECT_NEAR(clock.period(), 0.1, 1e-6);
+  EXPECT_NEAR(clock.tick(0.7), 3.0, 1e-5);
+}
+
+TEST(ScanClock, APeriodThatWasTooLongIsForgotten)
+{
+  for (const auto& [first, second] : {std::pair<double, double>{0.0, 1.7e9}, {0.1, 60.1}}) {
+    ScanClock clock;
+    clock.tick(0.0);
+    clock.tick(first);
+    clock.tick(second);
+    for (int i = 1; i <= 6; ++i) {
+      clock.tick(second + 0.1 * i);
+    }
+    EXPECT_NEAR(clock.period(), 0.1, 1e-6) << second;
+    EXPECT_NEAR(clock.tick(second + 0.9), 3.0, 1e-5) << second;
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam
