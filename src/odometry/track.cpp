@@ -132,7 +132,7 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
   problem.keeps_unseen = !is_judged;
-  const SurfaceRegistration registration = registerSurfaces(problem);
+  SurfaceRegistration registration = registerSurfaces(problem);
   if (registration.report.hasConverged()) {
     judge(registration);
     update(sweep, registration);

@@ -136,7 +136,8 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   }
   const LeastKnown open = leastKnown(outcome.registration.report.information);
   if (open.variance > kAmbiguous * kAmbiguous) {
-    for (double way = kNear; way <= kFarthest; way += kNear) {
+    for (int step = 1; step * kNear <= kFarthest; ++step) {
+      const double way = step * kNear;
       for (const double sign : {1.0, -1.0}) {
         Vector6 velocity = Vector6::Zero();
         velocity.head<3>() = sign * way / sweep.periods * open.direction;
