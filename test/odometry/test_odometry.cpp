@@ -346,21 +346,25 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
 }
 
 #ifdef PCL_FLOAM_TEST_SURFACES
-/// As of a lidar that has none: x, y, z alone, in any order. Each scan is of one instant.
+/// As of a lidar that has none: x, y, z alone, in any order and in a frame that is turned by any rotation. Each scan is
+/// of one instant.
 TEST(Odometry, NeedsNoScanLines)
 {
   std::mt19937 random(5);
+  const Eigen::Matrix3d turn = expSO3({0.9, 0.5, 0.3});
   Odometry<pcl::PointXYZ> odometry(defaults());
   for (int k = 0; k < 8; ++k) {
     pcl::PointCloud<pcl::PointXYZ> scan;
     for (const PointXYZIRT& point : sweep([](double t) { return steadyPath(std::floor(t)); }, k)) {
-      scan.push_back(pcl::PointXYZ(point.x, point.y, point.z));
+      pcl::PointXYZ turned;
+      turned.getVector3fMap() = turn.cast<float>() * point.getVector3fMap();
+      scan.push_back(turned);
     }
     std::shuffle(scan.begin(), scan.end(), random);
     const OdometryReport& report = odometry.track(scan);
     EXPECT_EQ(report.scan_lines, 0U);
     EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
-    EXPECT_LT((odometry.pose().translation - steadyPath(k).translation).norm(), 0.05) << "scan " << k;
+    EXPECT_LT((odometry.pose().translation - turn * steadyPath(k).translation).norm(), 0.05) << "scan " << k;
   }
 }
 #endif
