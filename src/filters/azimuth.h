@@ -22,8 +22,8 @@ inline float pseudoAzimuth(float x, float y)
   return rising >= 0.0F ? rising : rising + 4.0F;
 }
 
-/// atan2(y, x) in turns, in [0, 1], to 1e-7 of a turn: a division and a polynomial. With the standard library's, the
-/// features of a real HDL-64 scan took 2.4 instead of 2.2 ms: a sweep without a time field asks for thousands of them.
+/// atan2(y, x) in turns, in [0, 1], to 1e-7 of a turn: a division and a polynomial. A sweep without
+/// a time field asks for thousands of them.
 inline float azimuthInTurns(float x, float y)
 {
   const float right = std::abs(x);

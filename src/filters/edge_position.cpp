@@ -16,16 +16,15 @@ constexpr float kThin = 0.4F;
 
 /// The middle of something is behind what is seen of it by A / (2 W), A being the area of its section and W the width
 /// that is seen: 0.39 W for what is round, 0.25 W to 0.5 W for square posts, less for flat ones. Far away, only posts
-/// that at least two beams happened to hit become edges, and look wider than they are: with 0.3 W the highway's rate
-/// comes to 0.059, 0.090 and 0.041 instead of 0.050, 0.087 and 0.032 % (seeds 21 to 23, an edge counting 0.06).
+/// that at least two beams happened to hit become edges, and look wider than they are, so that less is
+/// taken.
 constexpr float kAxisBehind = 0.25F;
 
 /// rad; neighbours farther apart than this have lost returns between them.
 constexpr float kNextBeam = 0.02F;
 
-/// rad; between neighbours farther apart than this there is nothing, as before the sky. With 0.02, where a few returns
-/// are missing, walls end: six corridors with 30 % missing (seeds 21 to 26) then come to 9 cm in the mean, instead
-/// of 5.
+/// rad; between neighbours farther apart than this there is nothing, as before the sky. With less, walls would end
+/// where a few returns are missing.
 constexpr float kNothing = 0.1F;
 
 /// m; no end of a surface is moved by more. Far away, its points are metres apart.
@@ -33,17 +32,14 @@ constexpr float kFarthestMove = 0.4F;
 
 /// m; along a surface that the beams graze, points are farther apart than across them, and what stands out from it near
 /// its end (a door's frame) is mostly missed: the end is nearer than half a step. So it is moved by no more than half
-/// of what the beams are apart, or by this. Moved by half a step, ends of the corridor's walls 8 to 10 m away lay 3 cm
-/// farther off than seen from beside, the map stretched with each one, and the nine drives of the seeds 21 to 29 were
-/// ahead at the end by 0.2 % in the mean, and came to 8.0 cm; with this, by 0.0 % and to 3.0. With 0.04 they come
-/// to 4.1.
+/// of what the beams are apart, or by this. Moved by half a step, far ends of a corridor's walls would lie
+/// farther off than seen from beside, and the map stretch with each one.
 constexpr float kGrazing = 0.05F;
 
 /// Points from which the spacing at the end of a surface is taken.
 constexpr int kForSpacing = 3;
 
-/// Points on each side from which the corner of two surfaces is taken. In the corridor, with a map of exact poses,
-/// edges are then 9 instead of 12 mm from their lines (median).
+/// Points on each side from which the corner of two surfaces is taken.
 constexpr int kForCorner = 4;
 
 /// Cosine of the angle between two surfaces, above which they nearly go on or fold back: where lines through them meet

@@ -4,12 +4,11 @@
 
 namespace pcl_floam {
 
-void FirstPoses::begin(const SE3& initial_pose)
+void FirstPoses::begin()
 {
   *this = FirstPoses();
   open_ = true;
   at_.push_back({});
-  static_cast<void>(initial_pose);
 }
 
 void FirstPoses::miss()

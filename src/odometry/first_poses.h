@@ -14,7 +14,10 @@ namespace pcl_floam {
 /// Scans since the first one: those that were registered, and those between that told nothing.
 class FirstPoses {
 public:
-  void begin(const SE3& initial_pose);
+  void begin();
+  /// It is decided: nothing is corrected any more.
+  void close() { *this = FirstPoses(); }
+  [[nodiscard]] bool isOpen() const { return open_; }
   /// A scan comes, so many periods after the last one that was registered.
   void elapse(double periods) { periods_ = periods; }
   void add() { at_.push_back({++sweep_, 0.0}); }

@@ -97,9 +97,13 @@ struct SurfaceOdometry {
   /// The first scan: its motion is found with the second.
   const OdometryReport& start()
   {
+    if (first_poses.isOpen()) {
+      report.reason = "started again, since the first scan was never matched";
+    }
     tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
     periods = 0.0;
-    first_poses.begin(initial_pose);
+    first_poses.begin();
+    map.clear();
     first_scans = {scan.features};
     insertFeatures(scan.features, SweepPose{initial_pose, Vector6::Zero()});
     report.milliseconds.map += watch.lap();
@@ -213,6 +217,10 @@ struct SurfaceOdometry {
       report.covariance = report.registration.covariance;
     }
     first_poses.give(report.world_T_sensor);
+    if (tracker.isTracking() && !tracker.isOpen()) {
+      first_poses.close();
+      first_scans.clear();
+    }
     report.milliseconds.total = watch.total();
     return report;
   }

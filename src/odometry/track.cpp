@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -15,7 +16,6 @@ namespace {
 /// A keyframe, in sides of the finest cells and in rad.
 constexpr double kKeyframeSides = 0.3;
 constexpr double kKeyframeTurn = 0.1;
-constexpr double kNoiseShare = 1.0;
 /// Standard deviations that a registration begins with.
 constexpr double kLook = 3.0;
 
@@ -134,7 +134,9 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
   problem.keeps_unseen = !is_judged;
   SurfaceRegistration registration = registerSurfaces(problem);
   if (registration.report.hasConverged()) {
-    judge(registration);
+    if (is_judged) {
+      judge(registration);
+    }
     update(sweep, registration);
   } else {
     motion_ = before;
@@ -235,7 +237,7 @@ void Track::judge(const SurfaceRegistration& registration)
 void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
 {
   const SE3 last = pose_.middle;
-  const Matrix6 noise = (kNoiseShare * kResidualsPerIndependentOne) * registration.posterior;
+  const Matrix6 noise = kResidualsPerIndependentOne * registration.posterior;
   motion_.correct(registration.report.target_T_source, registration.posterior, noise);
   pose_ = {motion_.pose(), registration.report.sweep_twist};
   if (settings_.compensation == CompensationMode::two_stage) {

@@ -84,13 +84,16 @@ Tracker::Outcome Tracker::begin(Sweep sweep)
   if (!prior_map_.empty()) {
     return beginInPriorMap(sweep);
   }
-  if (first_.sample.empty() || failed_ >= kMostFailures) {
-    failed_ = 0;
+  if (first_.sample.empty()) {
     first_ = std::move(sweep);
     return {};
   }
   Outcome outcome = findFirstMotion(sweep);
   failed_ = isTracking() ? 0 : failed_ + 1;
+  if (failed_ == kMostFailures) {
+    failed_ = 0;
+    first_ = {};
+  }
   return outcome;
 }
 

@@ -46,15 +46,15 @@ TEST(MotionEstimate, LearnsAConstantVelocity)
 TEST(MotionEstimate, PredictsTheSameInOneStepOrInTwo)
 {
   std::mt19937 random(4);
-  MotionEstimate once = afterSteps(test::randomTwist(random, 1.0, 0.1), 5);
+  // Slow, as what disturbs it in between turns and moves with the sensor.
+  MotionEstimate once = afterSteps(test::randomTwist(random, 0.1, 0.1), 5);
   MotionEstimate twice = once;
   once.predict(2.0);
   twice.predict(1.0);
   twice.predict(1.0);
   EXPECT_LT(distance(once.pose(), twice.pose()), 1e-9);
   const Matrix6 difference = once.poseCovariance() - twice.poseCovariance();
-  // What disturbs it in between turns with the sensor.
-  EXPECT_LT(difference.norm(), 0.25 * Matrix6(once.poseCovariance()).norm());
+  EXPECT_LT(difference.norm(), 0.05 * Matrix6(once.poseCovariance()).norm());
 }
 
 TEST(MotionEstimate, IsSurerAfterACorrectionAndLessSureWithTime)

@@ -57,14 +57,11 @@ struct RegistrationParameters {
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. Edges are centimetres off, by the noise and the
   /// spacing of the few points that they were seen by, where planes are good to millimetres; but along corridors and
-  /// roads there is little else. The paper counts each as 1 (Eq. 10). At commit 96dd7a2, 0.08 against 0.1 against 0.12:
-  /// nine corridors (seeds 21 to 29) 11, 9 and 7 cm in the mean, 26, 15 and 14 cm at worst; highways (seeds 21 to 23)
-  /// 0.061, 0.063 and 0.068 % in the mean.
+  /// roads there is little else. The paper counts each as 1 (Eq. 10). More holds in
+  /// corridors, less on highways.
   double edge_weight = 0.12;
   /// A plane counts half if its map points' standard deviation across it is this times the median of the scan's planes,
-  /// and less if it is more; beside those points it is taken to grow. >= 0, 0: all count alike. Reasonable: 1 to 8. In
-  /// maps of exact poses, 2 against 4: heights in the corridor are off by 0.7 against 1.1 mm in the mean, the way along
-  /// it by 13 against 16 mm (one standard deviation).
+  /// and less if it is more; beside those points it is taken to grow. >= 0, 0: all count alike. Reasonable: 1 to 8.
   double plane_scatter = 2.0;
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
