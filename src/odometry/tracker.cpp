@@ -18,23 +18,18 @@ constexpr double kCellsPerRoot = 12.0;
 constexpr double kMapSpacing = 0.3;
 /// Sweeps until it is decided how it began.
 constexpr std::size_t kFirstSweeps = 12;
-/// m: a motion between two sweeps that is known no better is none that is known.
-constexpr double kAmbiguous = 0.03;
+/// A track whose evidence is so much less than the best one's is given up: false ones lead by less while the map is
+/// young, and fall behind by more where a scene is clear.
+constexpr double kHopeless = 100.0;
 
-/// Along which the pose is known least, and its variance there.
-struct LeastKnown {
-  Eigen::Vector3d direction;
-  double variance = 0.0;
-};
-
-LeastKnown leastKnown(const Matrix6& information)
+/// The direction along which the position is known least.
+Eigen::Vector3d leastKnown(const Matrix6& information)
 {
   const Eigen::Matrix<double, 6, 6> h = information;
   const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
                                                                     h.bottomRightCorner<3, 3>().inverse() *
                                                                     h.bottomLeftCorner<3, 3>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(translation);
-  return {eigen.eigenvectors().col(0), kResidualsPerIndependentOne / std::max(eigen.eigenvalues()[0], 1e-9)};
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(translation).eigenvectors().col(0);
 }
 
 }  // namespace
@@ -109,7 +104,7 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   for (const Eigen::Vector3d& point : prior.edges) {
     map.edges.insert(point, laser++);
   }
-  Hypothesis hypothesis{Track(settings_, side_), {}};
+  Hypothesis hypothesis{Track(settings_, side_), {}, false};
   Outcome outcome;
   outcome.registration = hypothesis.track.begin(sweep, std::move(map), prior.guess, prior.keeps_map);
   if (outcome.registration.report.hasConverged()) {
@@ -119,7 +114,7 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   return outcome;
 }
 
-/// From rest, near and far; and, if that leaves a direction open, along it.
+/// From rest, near and far; and along the direction that this leaves open.
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
   constexpr double kNear = 0.5;      // m
@@ -127,7 +122,6 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   constexpr double kFarthest = 4.0;  // m: 40 m/s at ten sweeps a second
   constexpr int kNearRounds = 3;
   constexpr int kFarRounds = 6;
-  constexpr std::size_t kMost = 4;
   Outcome outcome;
   Track rest(settings_, side_);
   outcome.registration = rest.begin(first_, sweep, Vector6::Zero(), kNear, kNearRounds);
@@ -137,25 +131,16 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
     hypotheses_.clear();
     return outcome;
   }
-  const LeastKnown open = leastKnown(outcome.registration.report.information);
-  if (open.variance > kAmbiguous * kAmbiguous) {
-    for (int step = 1; step * kNear <= kFarthest; ++step) {
-      const double way = step * kNear;
-      for (const double sign : {1.0, -1.0}) {
-        Vector6 velocity = Vector6::Zero();
-        velocity.head<3>() = sign * way / sweep.periods * open.direction;
-        suppose(sweep, velocity, kNear, kNearRounds);
-      }
+  const Eigen::Vector3d open = leastKnown(outcome.registration.report.information);
+  for (int step = 1; step * kNear <= kFarthest; ++step) {
+    for (const double sign : {1.0, -1.0}) {
+      Vector6 velocity = Vector6::Zero();
+      velocity.head<3>() = sign * step * kNear / sweep.periods * open;
+      suppose(sweep, velocity, kNear, kNearRounds);
     }
   }
-  std::sort(hypotheses_.begin(), hypotheses_.end(),
-            [](const Hypothesis& a, const Hypothesis& b) { return a.track.evidence() > b.track.evidence(); });
-  hypotheses_.erase(hypotheses_.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, hypotheses_.size())),
-                    hypotheses_.end());
-  is_open_ = hypotheses_.size() > 1 || open.variance > kAmbiguous * kAmbiguous;
-  if (is_open_) {
-    kept_ = {first_, sweep};
-  }
+  sweeps_ = 2;
+  giveUpHopeless();
   first_ = {};
   outcome.corrected = true;
   return outcome;
@@ -165,7 +150,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds)
 {
   constexpr double kSame = 0.25;  // m
-  Hypothesis hypothesis{Track(settings_, side_), {}};
+  Hypothesis hypothesis{Track(settings_, side_), {}, false};
   if (!hypothesis.track.begin(first_, sweep, velocity, far, rounds).report.hasConverged()) {
     return;
   }
@@ -185,93 +170,47 @@ void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, i
 
 void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 {
-  std::vector<Hypothesis> left;
-  std::vector<SurfaceRegistration> registrations;
-  std::size_t best = 0;
-  bool best_stays = false;
+  const std::size_t best = best_;
+  bool any = false;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
-    Hypothesis next = hypotheses_[i];
-    const SurfaceRegistration registration = next.track.step(sweep, true);
-    if (!registration.report.hasConverged()) {
-      outcome.registration = registration;
+    Hypothesis& hypothesis = hypotheses_[i];
+    const SurfaceRegistration registration = hypothesis.track.step(sweep, true);
+    hypothesis.is_lost = !registration.report.hasConverged();
+    if (hypothesis.is_lost) {
+      outcome.registration = any ? outcome.registration : registration;
       continue;
     }
-    next.poses.push_back(next.track.pose());
-    if (left.empty() || next.track.evidence() > left[best].track.evidence()) {
-      best = left.size();
-      best_stays = i == best_;
+    hypothesis.poses.push_back(hypothesis.track.pose());
+    if (!any || hypothesis.track.evidence() > hypotheses_[best_].track.evidence()) {
+      outcome.registration = registration;
+      best_ = i;
     }
-    left.push_back(std::move(next));
-    registrations.push_back(registration);
+    any = true;
   }
-  if (left.empty()) {
-    return;
-  }
-  hypotheses_ = std::move(left);
-  best_ = best;
-  kept_.push_back(sweep);
-  outcome.registration = registrations[best];
-  outcome.corrected = !best_stays;
-  if (kept_.size() == kFirstSweeps) {
-    settle();
-    outcome.registration.report.target_T_source = track().pose().middle;
-    outcome.corrected = true;
+  if (any) {
+    outcome.corrected = best_ != best;
+    ++sweeps_;
+    giveUpHopeless();
   }
 }
 
-/// The best hypothesis stays, its first sweeps where its last ones say they were.
-void Tracker::settle()
+/// Those that match no more or have fallen behind, but for the best few; and all others when it has to be decided.
+void Tracker::giveUpHopeless()
 {
-  Hypothesis found = std::move(hypotheses_[best_]);
-  const std::vector<SE3> poses = posesFoundBackwards(found);
-  if (!poses.empty()) {
-    found.track.begin(kept_, poses);
-    found.poses.clear();
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const std::size_t next = std::max<std::size_t>(i, 1);
-      const Vector6 velocity = log(poses[next - 1].inverse() * poses[next]) / kept_[next].periods;
-      found.poses.push_back({poses[i], kept_[i].fraction * velocity});
+  constexpr std::size_t kMost = 4;
+  const auto evidence = [](const Hypothesis& h) { return h.is_lost ? -HUGE_VAL : h.track.evidence(); };
+  const auto less = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a) < evidence(b); };
+  const double hopeless = evidence(*std::max_element(hypotheses_.begin(), hypotheses_.end(), less)) - kHopeless;
+  while (hypotheses_.size() > 1) {
+    const auto last = std::min_element(hypotheses_.begin(), hypotheses_.end(), less);
+    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMost && sweeps_ < kFirstSweeps) {
+      break;
     }
+    hypotheses_.erase(last);
   }
-  hypotheses_.clear();
-  hypotheses_.push_back(std::move(found));
-  best_ = 0;
-  is_open_ = false;
-  kept_.clear();
-}
-
-/// Nothing if a sweep cannot be registered.
-std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
-{
-  constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
-  const std::size_t n = kept_.size();
-  const auto backwards = [&](std::size_t k) {
-    Sweep sweep = kept_[k];
-    sweep.periods = k + 1 < n ? kept_[k + 1].periods : 1.0;
-    sweep.fraction = -sweep.fraction;
-    return sweep;
-  };
-  std::vector<Sweep> sweeps;
-  std::vector<SE3> poses(n);
-  std::vector<SE3> last;
-  for (std::size_t k = n; k-- > n - kTrusted;) {
-    poses[k] = found.poses[k].middle;
-    last.push_back(poses[k]);
-    sweeps.push_back(backwards(k));
-  }
-  Track back(settings_, side_);
-  back.begin(sweeps, last);
-  for (std::size_t k = n - kTrusted; k-- > 0;) {
-    if (!back.step(backwards(k)).report.hasConverged()) {
-      return {};
-    }
-    poses[k] = back.pose().middle;
-  }
-  const SE3 first_T_world = poses[0].inverse();
-  for (SE3& pose : poses) {
-    pose = first_T_world * pose;
-  }
-  return poses;
+  best_ =
+      static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), less) - hypotheses_.begin());
+  is_open_ = hypotheses_.size() > 1;
 }
 
 }  // namespace pcl_floam

@@ -10,8 +10,8 @@
 namespace pcl_floam {
 
 /// The first two sweeps of an open road hardly tell how the sensor moves. Then several motions are followed for the
-/// first sweeps, each by a track of its own; the one that explains them best stays, and what it has learnt of the
-/// motion goes back to the first sweep. Otherwise there is one track all the time.
+/// first sweeps, each by a track of its own, and the one that explains them best stays. Otherwise there is one track
+/// all the time.
 class Tracker {
 public:
   explicit Tracker(const TrackSettings& settings) : settings_(settings) {}
@@ -43,6 +43,7 @@ private:
   struct Hypothesis {
     Track track;
     std::vector<SweepPose> poses;
+    bool is_lost = false;
   };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
@@ -57,8 +58,7 @@ private:
   Outcome findFirstMotion(const Sweep& sweep);
   void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds);
   void followUp(const Sweep& sweep, Outcome& outcome);
-  void settle();
-  [[nodiscard]] std::vector<SE3> posesFoundBackwards(const Hypothesis& found) const;
+  void giveUpHopeless();
 
   TrackSettings settings_;
   SpatialSampling sampling_;
@@ -69,7 +69,7 @@ private:
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   bool is_open_ = false;
-  std::vector<Sweep> kept_;  // while open
+  std::size_t sweeps_ = 0;  // since the first one, while open
 };
 
 }  // namespace pcl_floam
