@@ -6,6 +6,9 @@
 
 namespace pcl_floam {
 
+/// The laser of a point that is compared with all there is, its own laser's curves included.
+inline constexpr std::uint32_t kNoLaser = 0xFFFFFFFFU;
+
 /// What one laser draws in one keyframe is a curve on its own cone, whatever it hits: a shape needs several curves. The
 /// curve that a laser drew last is where it draws now, if the sensor has hardly moved, and does not testify for it.
 class LaserSupport {
@@ -32,7 +35,7 @@ public:
   }
 
 private:
-  static std::uint64_t bit(std::uint32_t laser) { return std::uint64_t{1} << (laser % 64U); }
+  static std::uint64_t bit(std::uint32_t laser) { return laser == kNoLaser ? 0 : std::uint64_t{1} << (laser % 64U); }
   /// Another keyframe's curves of the same lasers get bits of their own, mostly: 21 and 64 have no common divisor.
   static std::uint64_t rotated(std::uint64_t bits, std::uint32_t keyframe)
   {

@@ -12,10 +12,10 @@ using Block6 = Eigen::Matrix<double, 6, 6>;
 /// turns the sensor.
 constexpr double kFirstTranslation = 0.3;
 constexpr double kFirstRotation = 0.15;
-/// By how much a prediction over one period is off, m and rad, per coordinate: 5 m/s^2 and 180 degrees/s^2 at ten
+/// By how much a prediction over one period is off, m and rad, per coordinate: 2 m/s^2 and 60 degrees/s^2 at ten
 /// sweeps a second.
-constexpr double kTranslation = 0.05;
-constexpr double kRotation = 0.03;
+constexpr double kTranslation = 0.02;
+constexpr double kRotation = 0.01;
 /// With exact poses the variance of a prediction over one period is so many times the density: 1/3 of it for the
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
 constexpr double kPerDensity = 0.62;

@@ -94,8 +94,13 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
     const std::size_t next = std::max<std::size_t>(i, 1);
     velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
     pose_ = {poses[i], sweeps[i].fraction * velocity};
-    motion_ = MotionEstimate(poses[i], velocity);
-    motion_.place(poses[i], covarianceOf(kKnown, kKnown));
+    if (i == 0) {
+      motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
+      motion_.place(poses[i], covarianceOf(kKnown, kKnown));
+    } else {
+      motion_.predict(sweeps[i].periods);
+      motion_.correct(poses[i], covarianceOf(kKnown, kKnown), covarianceOf(kKnown, kKnown));
+    }
     if (i == 0 || isKeyframe()) {
       map_->insert(sweeps[i], pose_);
       keyframe_ = poses[i];

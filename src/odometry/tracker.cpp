@@ -139,8 +139,9 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
       suppose(sweep, velocity, kNear, kNearRounds);
     }
   }
-  sweeps_ = 2;
   giveUpHopeless();
+  kept_ = {first_, sweep};
+  is_open_ = true;
   first_ = {};
   outcome.corrected = true;
   return outcome;
@@ -149,7 +150,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 /// Follows the motion that is found from a supposed one, unless it is known already.
 void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds)
 {
-  constexpr double kSame = 0.25;  // m
+  constexpr double kSame = 0.5;  // m
   Hypothesis hypothesis{Track(settings_, side_), {}, false};
   if (!hypothesis.track.begin(first_, sweep, velocity, far, rounds).report.hasConverged()) {
     return;
@@ -189,12 +190,17 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
   }
   if (any) {
     outcome.corrected = best_ != best;
-    ++sweeps_;
     giveUpHopeless();
+    kept_.push_back(sweep);
+    if (kept_.size() == kFirstSweeps) {
+      settle();
+      outcome.registration.report.target_T_source = track().pose().middle;
+      outcome.corrected = true;
+    }
   }
 }
 
-/// Those that match no more or have fallen behind, but for the best few; and all others when it has to be decided.
+/// Those that match no more or have fallen behind, but for the best few.
 void Tracker::giveUpHopeless()
 {
   constexpr std::size_t kMost = 4;
@@ -203,14 +209,68 @@ void Tracker::giveUpHopeless()
   const double hopeless = evidence(*std::max_element(hypotheses_.begin(), hypotheses_.end(), less)) - kHopeless;
   while (hypotheses_.size() > 1) {
     const auto last = std::min_element(hypotheses_.begin(), hypotheses_.end(), less);
-    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMost && sweeps_ < kFirstSweeps) {
+    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMost) {
       break;
     }
     hypotheses_.erase(last);
   }
   best_ =
       static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), less) - hypotheses_.begin());
-  is_open_ = hypotheses_.size() > 1;
+}
+
+/// The best hypothesis stays, its first sweeps where its last ones say they were.
+void Tracker::settle()
+{
+  Hypothesis found = std::move(hypotheses_[best_]);
+  const std::vector<SE3> poses = posesFoundBackwards(found);
+  if (!poses.empty()) {
+    found.track.begin(kept_, poses);
+    found.poses.clear();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const std::size_t next = std::max<std::size_t>(i, 1);
+      const Vector6 velocity = log(poses[next - 1].inverse() * poses[next]) / kept_[next].periods;
+      found.poses.push_back({poses[i], kept_[i].fraction * velocity});
+    }
+  }
+  hypotheses_.clear();
+  hypotheses_.push_back(std::move(found));
+  best_ = 0;
+  is_open_ = false;
+  kept_.clear();
+}
+
+/// Nothing if a sweep cannot be registered.
+std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
+{
+  constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
+  const std::size_t n = kept_.size();
+  const auto backwards = [&](std::size_t k) {
+    Sweep sweep = kept_[k];
+    sweep.periods = k + 1 < n ? kept_[k + 1].periods : 1.0;
+    sweep.fraction = -sweep.fraction;
+    return sweep;
+  };
+  std::vector<Sweep> sweeps;
+  std::vector<SE3> poses(n);
+  std::vector<SE3> last;
+  for (std::size_t k = n; k-- > n - kTrusted;) {
+    poses[k] = found.poses[k].middle;
+    last.push_back(poses[k]);
+    sweeps.push_back(backwards(k));
+  }
+  Track back(settings_, side_);
+  back.begin(sweeps, last);
+  for (std::size_t k = n - kTrusted; k-- > 0;) {
+    if (!back.step(backwards(k)).report.hasConverged()) {
+      return {};
+    }
+    poses[k] = back.pose().middle;
+  }
+  const SE3 first_T_world = poses[0].inverse();
+  for (SE3& pose : poses) {
+    pose = first_T_world * pose;
+  }
+  return poses;
 }
 
 }  // namespace pcl_floam

@@ -9,7 +9,7 @@
 
 namespace pcl_floam {
 
-/// The first two sweeps of an open road hardly tell how the sensor moves. Then several motions are followed for the
+/// The first two sweeps hardly tell how the sensor moves on an open road. So several motions are followed for the
 /// first sweeps, each by a track of its own, and the one that explains them best stays. Otherwise there is one track
 /// all the time.
 class Tracker {
@@ -59,6 +59,8 @@ private:
   void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds);
   void followUp(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
+  void settle();
+  [[nodiscard]] std::vector<SE3> posesFoundBackwards(const Hypothesis& found) const;
 
   TrackSettings settings_;
   SpatialSampling sampling_;
@@ -69,7 +71,7 @@ private:
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
   bool is_open_ = false;
-  std::size_t sweeps_ = 0;  // since the first one, while open
+  std::vector<Sweep> kept_;  // while open
 };
 
 }  // namespace pcl_floam

@@ -1,5 +1,6 @@
 #include "registration/surface_registration.h"
 
+#include "map/laser_support.h"
 #include "registration/sweep_points.h"
 
 #include <Eigen/Cholesky>
@@ -268,7 +269,8 @@ private:
       placed[n].arm = pose_.rotation * sensor.undistorted(point);
       placed[n].place = places[n] = pose_.translation + placed[n].arm;
       placed[n].since_middle = MovingSensor::sinceMiddle(point);
-      lasers[n] = point.laser;
+      // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
+      lasers[n] = weighs_evidence_ ? kNoLaser : point.laser;
     }
     term.target->find(places.data(), lasers.data(), n, surfaces.data());
     for (std::size_t i = 0; i < n; ++i) {
