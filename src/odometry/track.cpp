@@ -136,7 +136,6 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
   predict(sweep);
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
-  problem.keeps_unseen = !is_judged;
   SurfaceRegistration registration = registerSurfaces(problem);
   if (registration.report.hasConverged()) {
     if (is_judged) {

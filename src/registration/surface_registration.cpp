@@ -201,7 +201,7 @@ private:
   /// be is noise, and follows the sensor (solution remapping after Zhang and Singh, 2016).
   void keepGuessAlongWeak(RegistrationReport& report, Sums& sums)
   {
-    if (report.weak_directions.empty() || !problem_.keeps_unseen) {
+    if (report.weak_directions.empty()) {
       return;
     }
     const Vector6 scale = scaleOf(sums);

@@ -36,7 +36,6 @@ struct SurfaceProblem {
   bool guess_is_prior = true;  ///< the guess counts as a measurement of that covariance
   SweepDependence sweep;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
-  bool keeps_unseen = false;     ///< the guess, along directions that hardly anything tells of
   bool wants_evidence = false;   ///< else the result has none
   int max_iterations = 12;
   int threads = 1;
