@@ -4,6 +4,6 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 bash cmake/install_packages.sh
-cmake -S . -B build/test -G Ninja -DCMAKE_BUILD_TYPE=Release "$@"
+cmake -S . -B build/test -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "$@"
 cmake --build build/test
-ctest --test-dir build/test --output-on-failure
+ctest --test-dir build/test --output-on-failure -j "$(nproc)"

@@ -27,7 +27,7 @@ void writeRow(std::ofstream& stream, const SE3& pose)
   stream << std::endl;
 }
 
-std::ofstream create(const std::filesystem::path& file)
+std::ofstream createText(const std::filesystem::path& file)
 {
   std::ofstream stream(file);
   if (!stream) {
@@ -60,9 +60,9 @@ KittiSequenceWriter::KittiSequenceWriter(const std::filesystem::path& root, cons
   if (error || !std::filesystem::is_empty(scans_)) {
     throw std::runtime_error(scans_.string() + (error ? ": cannot be created" : ": holds files already"));
   }
-  times_ = create(scans_.parent_path() / "times.txt");
-  poses_ = create(root / "poses" / (sequence + ".txt"));
-  std::ofstream calibration = create(scans_.parent_path() / "calib.txt");
+  times_ = createText(scans_.parent_path() / "times.txt");
+  poses_ = createText(root / "poses" / (sequence + ".txt"));
+  std::ofstream calibration = createText(scans_.parent_path() / "calib.txt");
   calibration << "Tr: ";
   writeRow(calibration, cameraTLidar());
 }

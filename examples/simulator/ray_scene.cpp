@@ -40,18 +40,18 @@ std::array<float, 12> columnsOf(const SE3& pose)
   return columns;
 }
 
-/// One object in the world.
-struct Instance {
-  RTCScene shape = nullptr;
-  RTCGeometry geometry = nullptr;
-  std::vector<float> reflectivity, gloss;
-  Eigen::Matrix3f object_R_world = Eigen::Matrix3f::Identity();  ///< turns rays as the normals are
-  bool moving = false;
-};
-
 }  // namespace
 
 struct RayScene::Implementation {
+  /// One object in the world.
+  struct Instance {
+    RTCScene shape = nullptr;
+    RTCGeometry geometry = nullptr;
+    std::vector<float> reflectivity, gloss;
+    Eigen::Matrix3f object_R_world = Eigen::Matrix3f::Identity();  ///< turns rays as the normals are
+    bool moving = false;
+  };
+
   RTCDevice device = nullptr;
   RTCScene world = nullptr;
   std::vector<Instance> instances;
@@ -88,7 +88,7 @@ RayScene::RayScene(const TriangleMesh& still) : implementation_(std::make_unique
 RayScene::~RayScene()
 {
   rtcReleaseScene(implementation_->world);
-  for (const Instance& instance : implementation_->instances) {
+  for (const Implementation::Instance& instance : implementation_->instances) {
     rtcReleaseGeometry(instance.geometry);
     rtcReleaseScene(instance.shape);
   }
@@ -103,7 +103,8 @@ void RayScene::addMoving(const TriangleMesh& shape)
 
 void RayScene::place(std::size_t object, const SE3& world_T_start, const SE3& world_T_end)
 {
-  Instance& instance = implementation_->instances[object + 1];  // the first one is all that stands still
+  Implementation::Instance& instance =
+      implementation_->instances[object + 1];  // the first one is all that stands still
   rtcSetGeometryTransform(instance.geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columnsOf(world_T_start).data());
   rtcSetGeometryTransform(instance.geometry, 1, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columnsOf(world_T_end).data());
   rtcCommitGeometry(instance.geometry);
@@ -136,7 +137,7 @@ RayHit RayScene::cast(const Eigen::Vector3f& origin, const Eigen::Vector3f& dire
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
     return {};
   }
-  const Instance& instance = implementation_->instances[query.hit.instID[0]];
+  const Implementation::Instance& instance = implementation_->instances[query.hit.instID[0]];
   const Eigen::Vector3f normal = Eigen::Vector3f(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z).normalized();
   const float cosine = std::abs(normal.dot(instance.object_R_world * direction));
   const float gloss = query.hit.primID < instance.gloss.size() ? instance.gloss[query.hit.primID] : 0.0F;

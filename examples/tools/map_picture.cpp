@@ -14,9 +14,9 @@ namespace pcl_floam::tools {
 
 namespace {
 
-constexpr double kTurn = 0.6;     // rad, about the vertical
-constexpr double kSlant = 0.9;    // rad below the horizon that one looks
-constexpr double kMargin = 0.03;  // of the picture
+constexpr double kTurn = 0.6;            // rad, about the vertical
+constexpr double kSlant = 0.9;           // rad below the horizon that one looks
+constexpr double kPictureMargin = 0.03;  // of the picture
 constexpr double kQuantile =
     0.005;  // of the points on each side that may lie outside: far strays would shrink the rest
 
@@ -142,7 +142,7 @@ struct View {
     const Eigen::Vector2d high(quantile(coordinates[0], 1.0 - kQuantile), quantile(coordinates[1], 1.0 - kQuantile));
     const Eigen::Vector2d size = (high - low).cwiseMax(1.0);
     middle = 0.5 * (low + high);
-    scale = (1.0 - 2.0 * kMargin) * std::min(width / size.x(), height / size.y());
+    scale = (1.0 - 2.0 * kPictureMargin) * std::min(width / size.x(), height / size.y());
   }
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 using Cell = Eigen::Vector2i;
 
-constexpr double kMargin = 1.0;         ///< m around all that is drawn
+constexpr double kGridMargin = 1.0;     ///< m around all that is drawn
 constexpr double kMostCells = 1e8;      ///< a picture of 10000 x 10000
 constexpr double kFarthestSeen = 20.0;  ///< m from the path: farther, what lies between is not free for certain
 constexpr double kPathStep = 0.5;       ///< m of the path between two looks around
@@ -70,8 +70,8 @@ private:
       }
     }
     grid_.cell = settings_.cell;
-    grid_.origin = low.array() - kMargin;
-    const Eigen::Vector2d cells = ((high - low).array() + 2.0 * kMargin) / settings_.cell;
+    grid_.origin = low.array() - kGridMargin;
+    const Eigen::Vector2d cells = ((high - low).array() + 2.0 * kGridMargin) / settings_.cell;
     if (!(cells.prod() < kMostCells)) {
       throw std::invalid_argument("the occupancy grid would be of more than 100 million cells: take larger ones");
     }

@@ -9,7 +9,7 @@ namespace pcl_floam {
 namespace {
 
 /// A step to the next point that is longer than this part of the range leads to another surface.
-constexpr float kStep = 0.05F;
+constexpr float kSurfaceStep = 0.05F;
 
 /// m; what is wider than this is a surface with two ends.
 constexpr float kThin = 0.4F;
@@ -79,7 +79,7 @@ Border borderBetween(const LinePoints& line, int inner, int outer, float noise)
   }
   const auto i = static_cast<std::size_t>(inner);
   const auto o = static_cast<std::size_t>(outer);
-  const float limit = std::max(noise, kStep * std::min(line.range[i], line.range[o]));
+  const float limit = std::max(noise, kSurfaceStep * std::min(line.range[i], line.range[o]));
   if (line.squared_step[std::min(i, o)] < limit * limit) {
     return Border::none;
   }

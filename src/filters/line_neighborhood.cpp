@@ -17,7 +17,7 @@ namespace {
 constexpr float kSparse = 0.0075F;
 /// So far, in rad, the neighbours of a sparse line reach on each side.
 constexpr float kReach = 0.05F;
-constexpr int kFewest = 2;
+constexpr int kFewestNeighbors = 2;
 
 /// Median angle between neighbours, rad.
 float medianSpacing(const LinePoints& line, std::vector<float>& sample)
@@ -49,7 +49,7 @@ LineNeighborhood neighborhoodIn(const LinePoints& line, int wanted, std::vector<
   const float spacing = medianSpacing(line, scratch);
   if (spacing > kSparse) {
     neighborhood.is_sparse = true;
-    neighborhood.each_side = std::clamp(static_cast<int>(kReach / spacing), std::min(kFewest, wanted), wanted);
+    neighborhood.each_side = std::clamp(static_cast<int>(kReach / spacing), std::min(kFewestNeighbors, wanted), wanted);
   }
   return neighborhood;
 }

@@ -9,11 +9,6 @@ namespace pcl_floam {
 
 namespace {
 
-float elevationOf(const CloudView& cloud, std::size_t i)
-{
-  return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));
-}
-
 /// Assigns each point to the nearest of the rising \p elevations, if it is nearer than \p tolerance times the
 /// distance to that beam's neighbours.
 /// \return fraction of the measurable points that were assigned

@@ -19,6 +19,12 @@ inline bool isMeasurable(const CloudView& cloud, std::size_t i)
   return sum > 0.0F && std::isfinite(sum);
 }
 
+/// Angle above the sensor's xy plane, rad.
+inline float elevationOf(const CloudView& cloud, std::size_t i)
+{
+  return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));
+}
+
 /// A sensor has no more scan lines than this.
 constexpr int kMaxScanLines = 1024;
 

@@ -40,11 +40,6 @@ float meanElevationStep(const CloudView& cloud, std::size_t step, std::size_t li
   return count == 0 ? 0.0F : static_cast<float>(sum / static_cast<double>(count));
 }
 
-float elevationOf(const CloudView& cloud, std::size_t i)
-{
-  return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));
-}
-
 /// Consecutive measurable points of a cloud, enough to make a loop over them worth while.
 struct PointRun {
   static constexpr std::size_t kMost = 256;

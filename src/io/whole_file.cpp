@@ -13,7 +13,7 @@ namespace pcl_floam {
 namespace {
 
 /// No cloud that PCL can count is larger; reading what is only asks for memory.
-constexpr std::uintmax_t kLargest = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uintmax_t kLargestFile = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::string readWholeFile(const std::filesystem::path& file)
   if (error) {
     throw FileError(file, "cannot be read: " + error.message());
   }
-  if (size > kLargest) {
+  if (size > kLargestFile) {
     throw FileError(file, "has " + std::to_string(size) + " bytes: too large for a scan, a map or a trajectory");
   }
   errno = 0;

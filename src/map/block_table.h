@@ -12,10 +12,10 @@
 namespace pcl_floam {
 
 /// Integer coordinates of a voxel, 21 bits each: two million voxels either way.
-struct BlockKey {
+struct VoxelKey {
   std::int32_t x = 0, y = 0, z = 0;
 
-  friend bool operator==(const BlockKey& a, const BlockKey& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+  friend bool operator==(const VoxelKey& a, const VoxelKey& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
   /// All of it in one number, never 0.
   [[nodiscard]] std::uint64_t packed() const
@@ -27,7 +27,7 @@ struct BlockKey {
 };
 
 /// The voxel of side 1/\p inverse_side that holds a place.
-inline BlockKey keyOf(const Eigen::Vector3d& place, double inverse_side)
+inline VoxelKey keyOf(const Eigen::Vector3d& place, double inverse_side)
 {
   return {static_cast<std::int32_t>(std::floor(place.x() * inverse_side)),
           static_cast<std::int32_t>(std::floor(place.y() * inverse_side)),

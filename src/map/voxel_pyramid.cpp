@@ -26,14 +26,14 @@ VoxelPyramid::VoxelPyramid(double side, SurfaceShapes shapes)
 {
 }
 
-Eigen::Vector3d VoxelPyramid::centerOf(const BlockKey& key) const
+Eigen::Vector3d VoxelPyramid::centerOf(const VoxelKey& key) const
 {
   return sideOf(kLevels - 1) * Eigen::Vector3d(key.x + 0.5, key.y + 0.5, key.z + 0.5);
 }
 
 VoxelPyramid::Place VoxelPyramid::placeOf(const Eigen::Vector3d& point) const
 {
-  const BlockKey key = keyOf(point, 1.0 / sideOf(kLevels - 1));
+  const VoxelKey key = keyOf(point, 1.0 / sideOf(kLevels - 1));
   return {key, point - centerOf(key)};
 }
 

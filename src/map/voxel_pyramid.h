@@ -66,11 +66,11 @@ private:
     std::uint32_t count = 0;
   };
   struct Block {
-    BlockKey key;
+    VoxelKey key;
     std::uint32_t root = 0;
   };
   struct Place {
-    BlockKey key;
+    VoxelKey key;
     Eigen::Vector3d offset;  // from the block's centre
   };
 
@@ -85,7 +85,7 @@ private:
   };
 
   [[nodiscard]] Place placeOf(const Eigen::Vector3d& point) const;
-  [[nodiscard]] Eigen::Vector3d centerOf(const BlockKey& key) const;
+  [[nodiscard]] Eigen::Vector3d centerOf(const VoxelKey& key) const;
   [[nodiscard]] Path pathTo(const Place& place) const;
   Path makePathTo(const Place& place);
   const CellFit& fitOf(const Cell& cell, int level, CellFit& own) const;

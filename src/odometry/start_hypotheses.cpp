@@ -30,10 +30,10 @@ constexpr std::size_t kMostScansInAll = 20;
 /// highway (VLP-16 and HDL-32, seeds 51 to 56) were set in motion.
 double updatedResidual(double residual, const RegistrationReport& registration)
 {
-  constexpr double kForgetting = 0.6;
-  constexpr double kNone = 1.0;  // m
-  const double last = registration.hasConverged() ? registration.residual_rms : kNone;
-  return std::sqrt(kForgetting * residual * residual + (1.0 - kForgetting) * last * last);
+  constexpr double kMemory = 0.6;
+  constexpr double kUnmatched = 1.0;  // m
+  const double last = registration.hasConverged() ? registration.residual_rms : kUnmatched;
+  return std::sqrt(kMemory * residual * residual + (1.0 - kMemory) * last * last);
 }
 
 /// Whether the scans tell how far a start has come: along a way of which nothing can be seen, any motion would do.

@@ -12,9 +12,9 @@ void correct(double degrees, std::vector<Point>& features)
   if (degrees == 0.0) {
     return;
   }
-  constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
-  const double sine = std::sin(degrees * kRadPerDegree);
-  const double cosine = std::cos(degrees * kRadPerDegree);
+  constexpr double kRadians = 3.14159265358979323846 / 180.0;
+  const double sine = std::sin(degrees * kRadians);
+  const double cosine = std::cos(degrees * kRadians);
   for (Point& f : features) {
     const double horizontal = std::hypot(f.x, f.y);
     if (horizontal > 0.0) {

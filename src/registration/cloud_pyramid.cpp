@@ -17,7 +17,7 @@ constexpr double kFirstVoxel = 2.5;
 constexpr std::size_t kCoarsestPoints = 1500;
 
 /// Of a moved point whose coordinates are in single precision, as a share of the largest.
-constexpr double kRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
+constexpr double kFloatRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
 
 /// Voxels of a thinned cloud, in extents.
 constexpr double kRoughVoxel = 0.03;
@@ -143,7 +143,7 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
 {
   const Points points = takePoints(cloud, selectable);
   full_ = makeLevel(points.position, points.number, threads);
-  full_.rounding = kRounding * points.largest;
+  full_.rounding = kFloatRounding * points.largest;
 }
 
 std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
@@ -154,7 +154,7 @@ std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, cons
   const double voxel_size = std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min());
   const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
   pyramid->full_ = makeLevel(means, numbers, threads);
-  pyramid->full_.rounding = kRounding * points.largest;
+  pyramid->full_.rounding = kFloatRounding * points.largest;
   return pyramid;
 }
 

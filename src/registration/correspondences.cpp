@@ -39,7 +39,7 @@ constexpr double kNegligible = 0.02;
 /// corridors and from 1.9 to 1.7 by hand, and what is unknown along tunnels is called so as before
 /// (test_unobservable_direction.cpp). Seven more do as well. In maps that have grown this takes a sixth of the
 /// registration's time, for nothing.
-constexpr int kMoreNeighbors = 3;
+constexpr int kSpareNeighbors = 3;
 
 /// Features of one kind, and how the map holds them.
 template <typename Shape>
@@ -148,7 +148,7 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
   const int edge_points = parameters.edge_neighbors;
   const int plane_points = parameters.plane_neighbors;
   const int most_plane_points =
-      problem.sparse_target ? std::min(plane_points + kMoreNeighbors, kMaxNeighbors) : plane_points;
+      problem.sparse_target ? std::min(plane_points + kSpareNeighbors, kMaxNeighbors) : plane_points;
   const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges,
                                           edge_points,  edge_points,  fitLine};
   const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights,     *problem.target.planes,

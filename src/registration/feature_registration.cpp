@@ -49,10 +49,10 @@ std::vector<double> times(double factor, std::vector<double> weights)
 }
 
 /// One registration in progress.
-class PoseEstimation {
+class FeaturePoseEstimation {
 public:
-  PoseEstimation(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
-                 const RegistrationParameters& parameters)
+  FeaturePoseEstimation(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
+                        const RegistrationParameters& parameters)
       : source_(source),
         on_iteration_(run.on_iteration),
         model_(localModel(run)),
@@ -269,7 +269,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     return report;
   }
   const FeatureSet sample = sampleOf(source, static_cast<std::size_t>(parameters.max_features), run.spread_features);
-  return PoseEstimation(sample, target, run, parameters).run();
+  return FeaturePoseEstimation(sample, target, run, parameters).run();
 }
 
 }  // namespace pcl_floam

@@ -15,7 +15,7 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solvers do not tak
 /// that is independent. In six simulated worlds, with exact maps and motion during the sweep, the normalised error
 /// squared, 6 if it were exact, is then 1.3 (warehouse) to 19 (highway), about 4 in the
 /// middle; no test holds this.
-constexpr double kResidualsPerIndependentOne = 7.0;
+constexpr double kFeaturesPerIndependentOne = 7.0;
 
 }  // namespace
 
@@ -75,7 +75,7 @@ Matrix6 InformationAnalysis::covariance() const
 
 double InformationAnalysis::poseVariance() const
 {
-  return kResidualsPerIndependentOne * meanWeight() * residualVariance();
+  return kFeaturesPerIndependentOne * meanWeight() * residualVariance();
 }
 
 Matrix6 InformationAnalysis::strongProjection() const

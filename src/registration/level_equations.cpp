@@ -11,10 +11,10 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kChunk = 512;
+constexpr std::size_t kResidualsPerChunk = 512;
 
 /// For normally distributed residuals, 1.4826 medians of the absolute value are one standard deviation.
-constexpr double kScalePerMedian = 2.0 * 1.4826;
+constexpr double kPointScalePerMedian = 2.0 * 1.4826;
 constexpr double kSmallestScale = 1e-4;  ///< of the kernel, in spacings
 
 }  // namespace
@@ -85,7 +85,8 @@ void LevelAlignment::weigh(const SE3& pose)
       squares.push_back(r.squared);
     }
   }
-  scale_ = std::max(kSmallestScale * spacing_, kScalePerMedian * std::sqrt(static_cast<double>(medianOf(squares))));
+  scale_ =
+      std::max(kSmallestScale * spacing_, kPointScalePerMedian * std::sqrt(static_cast<double>(medianOf(squares))));
   scale_ = std::max(scale_, width_);
   scale_ = std::max(scale_, std::sqrt(static_cast<double>(std::numeric_limits<float>::min())));
 }
@@ -126,11 +127,11 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, AlignmentSums& s
 
 AlignmentSums LevelAlignment::sum(const SE3& pose) const
 {
-  std::vector<AlignmentSums> chunks((residuals_.size() + kChunk - 1) / kChunk);
+  std::vector<AlignmentSums> chunks((residuals_.size() + kResidualsPerChunk - 1) / kResidualsPerChunk);
 #pragma omp parallel for num_threads(run_.threads) schedule(static)
   for (std::ptrdiff_t chunk = 0; chunk < static_cast<std::ptrdiff_t>(chunks.size()); ++chunk) {
-    const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
-    for (std::size_t i = first; i < std::min(first + kChunk, residuals_.size()); ++i) {
+    const std::size_t first = static_cast<std::size_t>(chunk) * kResidualsPerChunk;
+    for (std::size_t i = first; i < std::min(first + kResidualsPerChunk, residuals_.size()); ++i) {
       if (residuals_[i].squared >= 0.0F) {
         accumulate(pose, i, chunks[static_cast<std::size_t>(chunk)]);
       }

@@ -24,7 +24,7 @@ constexpr double kLineRatio = 0.03;
 constexpr double kPlaneRatio = 0.1;
 
 /// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
-constexpr std::size_t kFewPoints = 1000;
+constexpr std::size_t kSparsePoints = 1000;
 
 LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
@@ -63,7 +63,8 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
     shape.kind = ShapeKind::plane;
     shape.axis = solver.eigenvectors().col(0).cast<float>();
   }
-  const Eigen::Vector3d to_centre = tree.size() < kFewPoints ? Eigen::Vector3d::Zero() : Eigen::Vector3d(sum / count);
+  const Eigen::Vector3d to_centre =
+      tree.size() < kSparsePoints ? Eigen::Vector3d::Zero() : Eigen::Vector3d(sum / count);
   const Eigen::Vector3d axis = shape.axis.cast<double>();
   if (shape.kind == ShapeKind::plane) {
     shape.to_surface = (axis * axis.dot(to_centre)).cast<float>();

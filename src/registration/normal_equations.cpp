@@ -12,7 +12,7 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kChunk = 256;
+constexpr std::size_t kFeaturesPerChunk = 256;
 
 /// Of a chunk's linked planes, every so many-th tells of the tilts' noise for all: it is a mean over hundreds that is
 /// wanted.
@@ -20,7 +20,7 @@ constexpr std::size_t kNoiseStride = 4;
 
 /// For normally distributed residuals, 1.4826 medians of the absolute value are one standard deviation; three of
 /// those are left almost untouched by the kernel.
-constexpr double kScalePerMedian = 3.0 * 1.4826;
+constexpr double kFeatureScalePerMedian = 3.0 * 1.4826;
 
 /// Fewer residuals than this tell little of their own spread. Between a corridor's doors there may be two edges, one
 /// of them wrong by half a metre: by their median it would be right, and hold the pose. So the planes' spread is taken
@@ -52,7 +52,7 @@ struct SpreadOfResiduals {
       }
     }
     is_reliable = squares.size() >= kEnoughForSpread;
-    scale = std::max(smallest, kScalePerMedian * std::sqrt(medianOf(squares)));
+    scale = std::max(smallest, kFeatureScalePerMedian * std::sqrt(medianOf(squares)));
   }
 
   bool is_reliable = false;
@@ -238,14 +238,14 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
 {
   const std::size_t edges = correspondences.edges.size();
   const std::size_t total = edges + correspondences.planes.size();
-  std::vector<ChunkSums> chunks((total + kChunk - 1) / kChunk);
+  std::vector<ChunkSums> chunks((total + kFeaturesPerChunk - 1) / kFeaturesPerChunk);
   const RobustKernel kernel = problem.parameters.kernel;
 #pragma omp parallel for num_threads(problem.threads) schedule(static)
   for (std::ptrdiff_t chunk = 0; chunk < static_cast<std::ptrdiff_t>(chunks.size()); ++chunk) {
     ChunkSums& sums = chunks[static_cast<std::size_t>(chunk)];
     auto& counts = sums.scalars;
-    const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
-    for (std::size_t i = first; i < std::min(first + kChunk, total); ++i) {
+    const std::size_t first = static_cast<std::size_t>(chunk) * kFeaturesPerChunk;
+    for (std::size_t i = first; i < std::min(first + kFeaturesPerChunk, total); ++i) {
       if (i < edges) {
         accumulate(correspondences.edges[i], kernel, scales.edge, sums, counts.edges, counts.edge_inliers);
       } else {

@@ -17,8 +17,8 @@ constexpr std::size_t kFewestPoints = 250;
 constexpr std::size_t kMostPoints = 1500;
 
 /// Many iterations, as each is cheap and points drawn to points move slowly; no finer than this, in spacings.
-constexpr int kIterations = 100;
-constexpr double kEpsilon = 2e-2;
+constexpr int kCoarseIterations = 100;
+constexpr double kCoarseEpsilon = 2e-2;
 
 /// Of points drawn to points, directions along surfaces count as much as those across them at first, and then this
 /// much of what they did, from level to level.
@@ -100,7 +100,7 @@ void StartSearch::drawSurfaces(const SE3& start)
 
 void StartSearch::align(LevelAlignment level)
 {
-  alignment_.align(level, kIterations, kEpsilon * level.spacing(), false);
+  alignment_.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
 }
 
 LevelAlignment StartSearch::surfaces(std::size_t level) const

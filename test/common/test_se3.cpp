@@ -1,4 +1,5 @@
 // Laws of rigid motions.
+#include "support/constants.h"
 #include "support/random_motion.h"
 
 #include <pcl_floam/common/se3.h>
@@ -10,8 +11,6 @@
 
 namespace pcl_floam::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 double difference(const SE3& a, const SE3& b)
 {

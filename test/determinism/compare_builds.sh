@@ -8,8 +8,8 @@ sources=$(cd "$(dirname "$0")/../.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-cmake -S "$sources" -B "$build/debug" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DPCL_FLOAM_BUILD_TESTS=OFF \
-  -DPCL_FLOAM_INSTALL=OFF >/dev/null
+cmake -S "$sources" -B "$build/debug" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DCMAKE_UNITY_BUILD=ON \
+  -DPCL_FLOAM_BUILD_TESTS=OFF -DPCL_FLOAM_INSTALL=OFF >/dev/null
 cmake --build "$build/debug" --target pcl_floam_odometry >/dev/null
 "$build/bin/pcl_floam_simulate" warehouse --scans 12 --seed 4 --output "$work/data" >/dev/null
 

@@ -1,3 +1,4 @@
+#include "support/constants.h"
 #include "support/random_motion.h"
 
 #include <pcl_floam/evaluation/trajectory_metrics.h>
@@ -10,10 +11,10 @@
 namespace pcl_floam {
 namespace {
 
+using test::kPi;
+
 using test::randomPath;
 using test::randomTwist;
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// \p poses poses on a straight line, \p spacing m apart, turned about z by \p turn rad per pose as they go.
 std::vector<SE3> straightPath(std::size_t poses, double spacing, double turn = 0.0)

@@ -1,4 +1,6 @@
 // Where the edge is that a scan line's sharpest point stands for.
+#include "support/constants.h"
+
 #include "filters/edge_position.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +14,6 @@
 namespace pcl_floam::test {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr float kNoise = 0.1F;
 
 /// A horizontal fan of beams. The shape gives each beam's range by its azimuth, or nothing where none comes back.

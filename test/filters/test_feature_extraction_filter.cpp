@@ -1,6 +1,7 @@
 // A filter as PCL's filters are.
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
+#include "support/constants.h"
 #include "support/feature_rooms.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
@@ -17,8 +18,6 @@ namespace {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
 using Extraction = FeatureExtraction<PointXYZIRT>;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 pcl::Indices filtered(Extraction& extraction, const Cloud::ConstPtr& cloud, FeatureKind kind)
 {

@@ -22,7 +22,7 @@ using Cloud = pcl::PointCloud<PointXYZIRT>;
 using Filter = pcl::Filter<PointXYZIRT>;
 using IndexFilter = pcl::FilterIndices<PointXYZIRT>;
 
-const Vector6 kTwist = (Vector6() << 0.3, 0.05, 0.0, 0.0, 0.0, 0.02).finished();
+const Vector6 kChainTwist = (Vector6() << 0.3, 0.05, 0.0, 0.0, 0.0, 0.02).finished();
 
 /// A scan whose intensity is the number of the point, so that each can be found again.
 Cloud::Ptr numberedScan()
@@ -69,7 +69,7 @@ IndexFilter::Ptr planes()
 Filter::Ptr undistorted()
 {
   auto compensation = pcl::make_shared<MotionCompensation<PointXYZIRT>>();
-  compensation->setTwist(kTwist);
+  compensation->setTwist(kChainTwist);
   return compensation;
 }
 

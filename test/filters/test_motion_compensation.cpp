@@ -1,6 +1,7 @@
 // Undoing the distortion of a sweep whose motion is known.
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
+#include "support/constants.h"
 #include "support/random_motion.h"
 #include "support/synthetic_cloud.h"
 
@@ -29,7 +30,6 @@ namespace {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kPoints = 500;
 
 const Vector6 kTwist = (Vector6() << 1.2, -0.3, 0.1, 0.05, -0.04, 0.2).finished();

@@ -1,4 +1,5 @@
 // The same scan lines, whatever tells them.
+#include "support/constants.h"
 #include "support/random_motion.h"
 #include "support/synthetic_cloud.h"
 
@@ -11,8 +12,6 @@
 
 namespace pcl_floam::test {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Lidar smallLidar()
 {

@@ -19,7 +19,7 @@ std::string bytesOf(const std::vector<float>& numbers)
 
 /// What an action throws as FileError; empty if nothing.
 template <typename Action>
-std::string reasonOf(const Action& action)
+std::string reasonOfAction(const Action& action)
 {
   try {
     action();
@@ -48,7 +48,7 @@ protected:
   }
   [[nodiscard]] std::string problem(const std::string& subfolder = "") const
   {
-    return reasonOf([&] { (void)ScanSource(folder.path() / subfolder); });
+    return reasonOfAction([&] { (void)ScanSource(folder.path() / subfolder); });
   }
   TemporaryFolder folder;
 };
@@ -155,9 +155,9 @@ TEST_F(KittiBin, PointsAreReadBitByBitAlsoWhenNotFinite)
 TEST_F(KittiBin, ACutOffFileIsAnErrorWithItsPosition)
 {
   const auto cut = folder.write("0.bin", std::string(35, '\0'));
-  EXPECT_NE(reasonOf([&] { readKittiBin(cut, cloud); }).find(cut.string() + ": byte 35"), std::string::npos);
+  EXPECT_NE(reasonOfAction([&] { readKittiBin(cut, cloud); }).find(cut.string() + ": byte 35"), std::string::npos);
   const auto empty = folder.write("1.bin", "");
-  EXPECT_NE(reasonOf([&] { readKittiBin(empty, cloud); }).find("empty"), std::string::npos);
+  EXPECT_NE(reasonOfAction([&] { readKittiBin(empty, cloud); }).find("empty"), std::string::npos);
   EXPECT_THROW(readKittiBin(folder.path() / "missing.bin", cloud), FileError);
   EXPECT_THROW(readKittiBin(folder.path(), cloud), FileError);
 }
@@ -166,7 +166,8 @@ TEST_F(KittiBin, AnOversizedFileIsRefusedUnread)
 {
   const auto file = folder.write("0.bin", "");
   std::filesystem::resize_file(file, 1ULL << 40);  // a hole: it takes no room on the disk
-  EXPECT_NE(reasonOf([&] { readKittiBin(file, cloud); }).find("has 1099511627776 bytes: too large"), std::string::npos);
+  EXPECT_NE(reasonOfAction([&] { readKittiBin(file, cloud); }).find("has 1099511627776 bytes: too large"),
+            std::string::npos);
 }
 
 }  // namespace

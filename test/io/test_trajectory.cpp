@@ -23,7 +23,7 @@ Trajectory randomTrajectory(double reach)
   return trajectory;
 }
 
-std::string reasonOf(const std::filesystem::path& file, TrajectoryFormat format = TrajectoryFormat::automatic)
+std::string reasonOfTrajectory(const std::filesystem::path& file, TrajectoryFormat format = TrajectoryFormat::automatic)
 {
   try {
     (void)readTrajectory(file, format);
@@ -154,18 +154,18 @@ TEST_F(ReadTrajectory, ErrorsNameLineAndReason)
       {"# nothing\n\n", "has no pose"},
       {"", "has no pose"}};
   for (const auto& [content, reason] : cases) {
-    const std::string message = reasonOf(folder.write("poses.txt", content));
+    const std::string message = reasonOfTrajectory(folder.write("poses.txt", content));
     EXPECT_NE(message.find(reason), std::string::npos) << message << " lacks " << reason;
   }
-  EXPECT_NE(reasonOf(folder.path() / "missing.txt").find("cannot be read"), std::string::npos);
-  EXPECT_NE(reasonOf(folder.path()).find("is a folder"), std::string::npos);
+  EXPECT_NE(reasonOfTrajectory(folder.path() / "missing.txt").find("cannot be read"), std::string::npos);
+  EXPECT_NE(reasonOfTrajectory(folder.path()).find("is a folder"), std::string::npos);
 }
 
 TEST_F(ReadTrajectory, ANamedFormatIsNotGuessed)
 {
   const auto file = folder.write("poses.txt", "0 0 0 0 0 0 0 1\n");
-  EXPECT_NE(reasonOf(file, TrajectoryFormat::kitti).find("instead of 12 (KITTI)"), std::string::npos);
-  EXPECT_EQ(reasonOf(file, TrajectoryFormat::tum), "");
+  EXPECT_NE(reasonOfTrajectory(file, TrajectoryFormat::kitti).find("instead of 12 (KITTI)"), std::string::npos);
+  EXPECT_EQ(reasonOfTrajectory(file, TrajectoryFormat::tum), "");
 }
 
 }  // namespace

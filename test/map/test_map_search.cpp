@@ -1,4 +1,5 @@
 // The map inside PCL's algorithms.
+#include "support/constants.h"
 #include "support/random_motion.h"
 
 #include <pcl_floam/map/map_search.h>
@@ -18,8 +19,6 @@ namespace {
 
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A floor, and two columns of points on it that stand apart.
 KeyframeVoxelMap furnishedMap()

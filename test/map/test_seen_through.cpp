@@ -17,7 +17,7 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 
 constexpr float kHeight = 0.4F;  // of the sensor above the floor
-constexpr float kPi = 3.14159265F;
+constexpr float kHalfTurn = 3.14159265F;
 
 /// Where a beam from the origin meets the floor, a wall around the sensor, or a pillar ahead of it.
 Eigen::Vector3f meet(float azimuth, float elevation, float wall, bool pillar)
@@ -39,7 +39,7 @@ Points scanOf(float wall, bool pillar, float step = 0.006F, int lines = 64)
 {
   Points points;
   for (int line = 0; line < lines; ++line) {
-    for (float azimuth = -kPi; azimuth < kPi; azimuth += step) {
+    for (float azimuth = -kHalfTurn; azimuth < kHalfTurn; azimuth += step) {
       const float share = static_cast<float>(line) / static_cast<float>(lines);
       points.push_back(meet(azimuth, -0.45F + 0.576F * share, wall, pillar));
     }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kExact = 1e-10;  // m^2, rad^2
 
-double distance(const SE3& a, const SE3& b)
+double poseDistance(const SE3& a, const SE3& b)
 {
   return log(a.inverse() * b).norm();
 }
@@ -39,7 +39,7 @@ TEST(MotionEstimate, LearnsAConstantVelocity)
     const Vector6 velocity = test::randomTwist(random, 2.0, 0.1);
     MotionEstimate motion = afterSteps(velocity, 20);
     motion.predict(1.0);
-    EXPECT_LT(distance(motion.pose(), exp(21.0 * velocity)), 1e-2 * velocity.norm());
+    EXPECT_LT(poseDistance(motion.pose(), exp(21.0 * velocity)), 1e-2 * velocity.norm());
   }
 }
 
@@ -52,7 +52,7 @@ TEST(MotionEstimate, PredictsTheSameInOneStepOrInTwo)
   once.predict(2.0);
   twice.predict(1.0);
   twice.predict(1.0);
-  EXPECT_LT(distance(once.pose(), twice.pose()), 1e-9);
+  EXPECT_LT(poseDistance(once.pose(), twice.pose()), 1e-9);
   const Matrix6 difference = once.poseCovariance() - twice.poseCovariance();
   EXPECT_LT(difference.norm(), 0.05 * Matrix6(once.poseCovariance()).norm());
 }
@@ -93,7 +93,7 @@ TEST(MotionEstimate, PlacedElsewhereItMovesOnAsBefore)
   const SE3 place(expSO3({0.0, 0.0, 1.0}), Eigen::Vector3d(5.0, 6.0, 7.0));
   motion.place(place, 0.01 * Matrix6(Matrix6::Identity()));
   motion.predict(1.0);
-  EXPECT_LT(distance(motion.pose(), place * exp(velocity)), 1e-9);
+  EXPECT_LT(poseDistance(motion.pose(), place * exp(velocity)), 1e-9);
   EXPECT_GT(motion.poseCovariance()(0, 0), 0.01);
 }
 

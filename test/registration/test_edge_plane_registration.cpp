@@ -1,4 +1,5 @@
 // What is registered: lidar scans, maps and any other cloud.
+#include "support/constants.h"
 #include "support/registration_clouds.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
@@ -12,8 +13,6 @@ namespace {
 
 using Registration = EdgePlaneRegistration<Point, Point>;
 using Base = pcl::Registration<Point, Point>;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(EdgePlaneRegistration, RegistersLidarScansThroughTheBasePointer)
 {

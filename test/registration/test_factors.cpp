@@ -8,11 +8,6 @@
 namespace pcl_floam::test {
 namespace {
 
-Eigen::Vector3d randomVector(std::mt19937& random, double limit)
-{
-  return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
-}
-
 /// d(exp(delta) q)/d(delta) at delta = 0: [I, -[q]x] (Eq. 11).
 Eigen::Matrix<double, 3, 6> motionDerivative(const Eigen::Vector3d& q)
 {

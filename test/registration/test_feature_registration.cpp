@@ -13,7 +13,7 @@
 namespace pcl_floam::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 double distance(const SE3& a, const SE3& b)
 {
@@ -223,7 +223,7 @@ TEST_F(FeatureRegistrationTest, NothingThatIsNotFiniteComesOut)
 {
   mapRoom();
   SE3 guess = guess_;
-  guess.translation.x() = kNan;
+  guess.translation.x() = kNoNumber;
   EXPECT_EQ(run(guess).termination, Termination::invalid_input);
   EXPECT_TRUE(run(guess).target_T_source.isFinite());
   guess = guess_;

@@ -10,11 +10,6 @@
 namespace pcl_floam::test {
 namespace {
 
-Eigen::Vector3d randomVector(std::mt19937& random, double limit)
-{
-  return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
-}
-
 /// Points of a level floor, which the map has higher.
 Correspondences floorOf(double higher)
 {

@@ -13,11 +13,6 @@
 namespace pcl_floam::test {
 namespace {
 
-Eigen::Vector3d randomVector(std::mt19937& random, double limit)
-{
-  return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
-}
-
 /// A scan, and correspondences that a trajectory of the sensor fits up to \p noise.
 struct Scan {
   std::vector<Feature> edges;

@@ -19,17 +19,17 @@
 namespace pcl_floam::test {
 namespace {
 
-using PointN = pcl::PointNormal;
-using CloudN = pcl::PointCloud<PointN>;
+using NormalPoint = pcl::PointNormal;
+using NormalCloud = pcl::PointCloud<NormalPoint>;
 
 /// Far more than any registration finds that starts from nothing.
 const Eigen::Matrix4f kFarMotion =
     motionThere(SE3(expSO3(2.6 * Eigen::Vector3d(0.3, 0.5, 0.8).normalized()), {1.5, -0.7, 0.4})).matrix<float>();
 
 /// Every n-th point: searches without a guess go through all pairs of points.
-CloudN::Ptr everyNth(const CloudN& cloud, std::size_t n)
+NormalCloud::Ptr everyNth(const NormalCloud& cloud, std::size_t n)
 {
-  auto result = pcl::make_shared<CloudN>();
+  auto result = pcl::make_shared<NormalCloud>();
   for (std::size_t i = 0; i < cloud.size(); i += n) {
     result->push_back(cloud[i]);
   }
@@ -39,10 +39,10 @@ CloudN::Ptr everyNth(const CloudN& cloud, std::size_t n)
 /// Two samplings of the object, far apart. Their few points are for the coarse stage, all of them for ours.
 class FineStage : public ::testing::Test {
 protected:
-  FineStage() : source(pcl::make_shared<CloudN>()), target(withNormals<PointN>(sampledObject(1, 1.0)))
+  FineStage() : source(pcl::make_shared<NormalCloud>()), target(withNormals<NormalPoint>(sampledObject(1, 1.0)))
   {
     const Eigen::Matrix4f back = kFarMotion.inverse();
-    pcl::transformPointCloudWithNormals(*withNormals<PointN>(sampledObject(2, 1.0)), *source, back);
+    pcl::transformPointCloudWithNormals(*withNormals<NormalPoint>(sampledObject(2, 1.0)), *source, back);
     few_of_source = everyNth(*source, 28);
     few_of_target = everyNth(*target, 28);
   }
@@ -56,10 +56,10 @@ protected:
 
   [[nodiscard]] Eigen::Matrix4f refined(const Eigen::Matrix4f& guess) const
   {
-    EdgePlaneRegistration<PointN, PointN> registration;
+    EdgePlaneRegistration<NormalPoint, NormalPoint> registration;
     registration.setInputSource(source);
     registration.setInputTarget(target);
-    CloudN output;
+    NormalCloud output;
     registration.align(output, guess);
     EXPECT_TRUE(registration.hasConverged());
     return registration.getFinalTransformation();
@@ -73,10 +73,10 @@ protected:
     EXPECT_LT(errorOf(refined(coarse)), 0.001);
   }
 
-  CloudN::Ptr source;
-  CloudN::Ptr target;
-  CloudN::Ptr few_of_source;
-  CloudN::Ptr few_of_target;
+  NormalCloud::Ptr source;
+  NormalCloud::Ptr target;
+  NormalCloud::Ptr few_of_source;
+  NormalCloud::Ptr few_of_target;
 };
 
 TEST_F(FineStage, NeedsTheCoarseOne)
@@ -86,8 +86,8 @@ TEST_F(FineStage, NeedsTheCoarseOne)
 
 TEST_F(FineStage, AfterSampleConsensusInitialAlignment)
 {
-  const auto featuresOf = [](const CloudN::Ptr& few, const CloudN::Ptr& all) {
-    pcl::FPFHEstimation<PointN, PointN, pcl::FPFHSignature33> estimation;
+  const auto featuresOf = [](const NormalCloud::Ptr& few, const NormalCloud::Ptr& all) {
+    pcl::FPFHEstimation<NormalPoint, NormalPoint, pcl::FPFHSignature33> estimation;
     estimation.setInputCloud(few);
     estimation.setSearchSurface(all);
     estimation.setInputNormals(all);
@@ -96,7 +96,7 @@ TEST_F(FineStage, AfterSampleConsensusInitialAlignment)
     estimation.compute(*features);
     return features;
   };
-  pcl::SampleConsensusInitialAlignment<PointN, PointN, pcl::FPFHSignature33> coarse;
+  pcl::SampleConsensusInitialAlignment<NormalPoint, NormalPoint, pcl::FPFHSignature33> coarse;
   coarse.setInputSource(few_of_source);
   coarse.setSourceFeatures(featuresOf(few_of_source, everyNth(*source, 3)));
   coarse.setInputTarget(few_of_target);
@@ -104,7 +104,7 @@ TEST_F(FineStage, AfterSampleConsensusInitialAlignment)
   coarse.setMinSampleDistance(0.3F);
   coarse.setMaxCorrespondenceDistance(0.1);
   coarse.setMaximumIterations(300);
-  CloudN output;
+  NormalCloud output;
   std::srand(1);
   coarse.align(output);
   expectRefined(coarse.getFinalTransformation());
@@ -115,7 +115,7 @@ TEST_F(FineStage, AfterPpfRegistration)
 #ifdef __SANITIZE_ADDRESS__
   GTEST_SKIP() << "PCL 1.13's PPFRegistration reads one number past the end of its votes";
 #endif
-  pcl::PPFEstimation<PointN, PointN, pcl::PPFSignature> estimation;
+  pcl::PPFEstimation<NormalPoint, NormalPoint, pcl::PPFSignature> estimation;
   estimation.setInputCloud(few_of_source);
   estimation.setInputNormals(few_of_source);
   auto features = pcl::make_shared<pcl::PointCloud<pcl::PPFSignature>>();
@@ -123,21 +123,21 @@ TEST_F(FineStage, AfterPpfRegistration)
   auto search = pcl::make_shared<pcl::PPFHashMapSearch>(0.2F, 0.05F);
   search->setInputFeatureCloud(features);
 
-  pcl::PPFRegistration<PointN, PointN> coarse;
+  pcl::PPFRegistration<NormalPoint, NormalPoint> coarse;
   coarse.setSceneReferencePointSamplingRate(10);
   coarse.setPositionClusteringThreshold(0.2F);
   coarse.setRotationClusteringThreshold(0.5F);
   coarse.setSearchMethod(search);
   coarse.setInputSource(few_of_source);
   coarse.setInputTarget(few_of_target);
-  CloudN output;
+  NormalCloud output;
   coarse.align(output);
   expectRefined(coarse.getFinalTransformation());
 }
 
 /// Draws the same numbers in every run, where PCL's takes them from the time of day: without the first base, which is
 /// drawn before anything here is asked.
-class RepeatableFpcs : public pcl::registration::FPCSInitialAlignment<PointN, PointN, PointN> {
+class RepeatableFpcs : public pcl::registration::FPCSInitialAlignment<NormalPoint, NormalPoint, NormalPoint> {
 protected:
   int bruteForceCorrespondences(int first, int second, pcl::Correspondences& pairs) override
   {
@@ -162,7 +162,7 @@ TEST_F(FineStage, AfterFourPointCongruentSets)
   coarse.setDelta(0.02F);
   coarse.setScoreThreshold(0.5F);
   coarse.setMaximumIterations(10);
-  CloudN output;
+  NormalCloud output;
   coarse.align(output);
   expectRefined(coarse.getFinalTransformation());
 }

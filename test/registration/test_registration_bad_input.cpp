@@ -1,4 +1,5 @@
 // Clouds that constrain no pose, and settings that make no sense: an answer with a reason, never NaN or a crash.
+#include "support/constants.h"
 #include "support/registration_clouds.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
@@ -14,8 +15,6 @@ namespace pcl_floam::test {
 namespace {
 
 using Registration = EdgePlaneRegistration<Point, Point>;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 Cloud::Ptr cloudOf(const std::vector<Eigen::Vector3f>& positions)
 {

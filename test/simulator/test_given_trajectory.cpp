@@ -14,8 +14,6 @@
 
 namespace pcl_floam::simulator {
 
-namespace {
-
 /// A camera that drives ahead at 10 m/s, climbs by 0.05 m a metre and turns left by 0.2 degrees a metre.
 class GivenTrajectory : public testing::Test {
 protected:
@@ -47,8 +45,6 @@ protected:
 
   std::filesystem::path file_;
 };
-
-}  // namespace
 
 TEST_F(GivenTrajectory, IsReadInABodysAxes)
 {

@@ -12,13 +12,13 @@
 
 namespace pcl_floam::simulator {
 
-struct Drive {
+struct SparseDrive {
   std::string world;
   std::string sensor;
   double error;  ///< m, at most
 };
 
-class MissingReturns : public testing::TestWithParam<Drive> {};
+class MissingReturns : public testing::TestWithParam<SparseDrive> {};
 
 TEST_P(MissingReturns, NineInTenLoseNothing)
 {
@@ -50,8 +50,8 @@ TEST_P(MissingReturns, NineInTenLoseNothing)
 }
 
 INSTANTIATE_TEST_SUITE_P(Worlds, MissingReturns,
-                         testing::Values(Drive{"warehouse", "vlp16", 0.03}, Drive{"room", "vlp16", 0.03},
-                                         Drive{"urban", "hdl64", 0.15}, Drive{"highway", "hdl64", 0.5}),
+                         testing::Values(SparseDrive{"warehouse", "vlp16", 0.03}, SparseDrive{"room", "vlp16", 0.03},
+                                         SparseDrive{"urban", "hdl64", 0.15}, SparseDrive{"highway", "hdl64", 0.5}),
                          [](const auto& drive) { return drive.param.world; });
 
 /// Swung by hand, a sensor turns by anything while it sees nothing.

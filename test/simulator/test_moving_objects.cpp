@@ -69,7 +69,7 @@ MapPoints mapPoints(const Odometry<PointXYZIRT>& odometry, const Places& standin
 
 }  // namespace
 
-struct Drive {
+struct DriveAmongObjects {
   const char* world;
   const char* sensor;
   double start;
@@ -77,11 +77,12 @@ struct Drive {
   double gone;  ///< share of the points of moving objects that may remain; some are there still
 };
 
-class MovingObjects : public testing::TestWithParam<Drive> {};
+class MovingObjects : public testing::TestWithParam<DriveAmongObjects> {};
 
 INSTANTIATE_TEST_SUITE_P(Worlds, MovingObjects,
-                         testing::Values(Drive{"urban", "hdl64", 5.0, 100, 0.5}, Drive{"urban", "vlp16", 5.0, 200, 0.6},
-                                         Drive{"warehouse", "vlp16", 0.0, 300, 0.7}),
+                         testing::Values(DriveAmongObjects{"urban", "hdl64", 5.0, 100, 0.5},
+                                         DriveAmongObjects{"urban", "vlp16", 5.0, 200, 0.6},
+                                         DriveAmongObjects{"warehouse", "vlp16", 0.0, 300, 0.7}),
                          [](const auto& parameter) {
                            return std::string(parameter.param.world) + "_" + parameter.param.sensor;
                          });

@@ -11,13 +11,13 @@
 
 namespace pcl_floam::simulator {
 
-struct Drive {
+struct TunnelDrive {
   std::uint64_t seed;
   int judged_from;  ///< scan; before it the map is the noise of a few, which may be taken for knowledge
 };
 
 /// Drives through a whole tunnel.
-class UnobservableDirection : public testing::TestWithParam<Drive> {
+class UnobservableDirection : public testing::TestWithParam<TunnelDrive> {
 protected:
   static SimulationOptions optionsOf(std::uint64_t seed)
   {
@@ -105,8 +105,8 @@ TEST_P(UnobservableDirection, IsReportedAndItsErrorIsWithinItsBounds)
 }
 
 INSTANTIATE_TEST_SUITE_P(Tunnels, UnobservableDirection,
-                         testing::Values(Drive{21, 15}, Drive{22, 15},
-                                         Drive{23, 30}),  // its noise is taken for knowledge until scan 29
+                         testing::Values(TunnelDrive{21, 15}, TunnelDrive{22, 15},
+                                         TunnelDrive{23, 30}),  // its noise is taken for knowledge until scan 29
                          [](const auto& drive) { return std::to_string(drive.param.seed); });
 
 }  // namespace pcl_floam::simulator

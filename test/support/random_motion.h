@@ -16,6 +16,11 @@ inline double uniform(std::mt19937& random, double limit)
   return limit * (2.0 * static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 1.0);
 }
 
+inline Eigen::Vector3d randomVector(std::mt19937& random, double limit)
+{
+  return {uniform(random, limit), uniform(random, limit), uniform(random, limit)};
+}
+
 inline Vector6 randomTwist(std::mt19937& random, double translation, double rotation)
 {
   Vector6 twist;

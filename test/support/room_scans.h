@@ -2,6 +2,8 @@
 /// Scans of a furnished room as KITTI's .bin files, for tests that need scans an odometry can track.
 #pragma once
 
+#include "support/constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -45,7 +47,6 @@ inline std::string roomScan(double x, double y)
                                       {{-9.0, 5.0, -1.7}, {-8.0, 7.0, 3.5}}};
   constexpr int kRings = 32;
   constexpr int kColumns = 900;
-  constexpr double kPi = 3.14159265358979323846;
   const double origin[3] = {x, y, 0.0};
   std::string bytes;
   for (int ring = 0; ring < kRings; ++ring) {

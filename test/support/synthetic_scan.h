@@ -2,6 +2,7 @@
 /// Sweeps of a moving lidar in a furnished room, by ray casting.
 #pragma once
 
+#include "support/constants.h"
 #include "support/room_scans.h"
 
 #include <pcl_floam/common/se3.h>
@@ -12,8 +13,6 @@
 #include <vector>
 
 namespace pcl_floam::test {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// A rotating lidar.
 struct Lidar {

@@ -7,10 +7,10 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kWay = 130.0;     // m to go
-constexpr double kBeyond = 110.0;  // m of corridor before and after it: longer than the sensor sees
-constexpr double kWidth = 2.4;     // m
-constexpr double kHeight = 2.7;    // m
+constexpr double kCorridorWay = 130.0;   // m to go
+constexpr double kBeyond = 110.0;        // m of corridor before and after it: longer than the sensor sees
+constexpr double kWidth = 2.4;           // m
+constexpr double kCorridorHeight = 2.7;  // m
 constexpr double kDoorWidth = 0.95;
 constexpr double kFrame = 0.07;  // m, width of a door's frame
 
@@ -21,8 +21,8 @@ Relief wall(const std::vector<double>& doors)
   for (const double door : doors) {
     columns.insert(columns.end(), {door - kFrame, door, door + kDoorWidth, door + kDoorWidth + kFrame});
   }
-  columns.push_back(kWay + kBeyond);
-  Relief relief(columns, {0.0, 2.05, 2.05 + kFrame, kHeight}, {0.0, 0.65});
+  columns.push_back(kCorridorWay + kBeyond);
+  Relief relief(columns, {0.0, 2.05, 2.05 + kFrame, kCorridorHeight}, {0.0, 0.65});
   constexpr ReliefCell kFrameCell{0.02, 0.5};
   for (std::size_t i = 0; i < doors.size(); ++i) {
     const std::size_t first = 4 * i + 1;
@@ -41,7 +41,7 @@ Relief wall(const std::vector<double>& doors)
 std::array<std::vector<double>, 2> placeDoors(Random& random)
 {
   std::array<std::vector<double>, 2> doors;
-  for (double x = -kBeyond + 3.0; x < kWay + kBeyond - 3.0; x += random.uniform(5.0, 11.0)) {
+  for (double x = -kBeyond + 3.0; x < kCorridorWay + kBeyond - 3.0; x += random.uniform(5.0, 11.0)) {
     const int where = random.index(3);
     if (where != 1) {
       doors[0].push_back(x);
@@ -67,13 +67,13 @@ World makeCorridor(const WorldOptions& options)
   // The other wall is seen from its other side: its doors recede away from the corridor as well.
   std::vector<double> mirrored;
   for (auto door = doors[1].rbegin(); door != doors[1].rend(); ++door) {
-    mirrored.push_back(kWay - *door - kDoorWidth);
+    mirrored.push_back(kCorridorWay - *door - kDoorWidth);
   }
-  addRelief(world.still, upright(kWay, 0.5 * kWidth, 0.0, M_PI), wall(mirrored));
-  for (const double z : {0.0, kHeight}) {
+  addRelief(world.still, upright(kCorridorWay, 0.5 * kWidth, 0.0, M_PI), wall(mirrored));
+  for (const double z : {0.0, kCorridorHeight}) {
     addQuad(world.still,
-            {Eigen::Vector3d(-kBeyond, -kWidth, z), Eigen::Vector3d(kWay + kBeyond, -kWidth, z),
-             Eigen::Vector3d(kWay + kBeyond, kWidth, z), Eigen::Vector3d(-kBeyond, kWidth, z)},
+            {Eigen::Vector3d(-kBeyond, -kWidth, z), Eigen::Vector3d(kCorridorWay + kBeyond, -kWidth, z),
+             Eigen::Vector3d(kCorridorWay + kBeyond, kWidth, z), Eigen::Vector3d(-kBeyond, kWidth, z)},
             z > 0.0 ? 0.7 : 0.3);
   }
   Random own = randomOfPath(options, random);
@@ -82,8 +82,8 @@ World makeCorridor(const WorldOptions& options)
   const bool back = options.path % 2 == 0;
   const SmoothNoise weave(own, 0.12, 1.0 / 40.0, 1.0 / 18.0);
   std::vector<Eigen::Vector2d> points;
-  for (double x = 0.0; x <= kWay; x += 1.0) {
-    points.emplace_back(back ? kWay - x : x, aside + weave(x));
+  for (double x = 0.0; x <= kCorridorWay; x += 1.0) {
+    points.emplace_back(back ? kCorridorWay - x : x, aside + weave(x));
   }
   DriveStyle style;
   style.speed = 1.5;

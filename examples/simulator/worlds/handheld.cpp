@@ -9,7 +9,7 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kInterval = 0.1;                   // s between the spline's controls
+constexpr double kControlInterval = 0.1;            // s between the spline's controls
 constexpr double kDuration = 60.0;                  // s
 constexpr double kPeakRate = 120.0 * M_PI / 180.0;  // rad/s
 
@@ -39,7 +39,7 @@ MotionSpline swing(const WorldOptions& options, double swing)
   const SmoothNoise pitch(random, 0.3, 0.25, 0.7, 4);
   const SmoothNoise roll(random, 0.3, 0.25, 0.7, 4);
   std::vector<BodyState> controls;
-  for (double t = 0.0; t < kDuration + 3.0 * kInterval; t += kInterval) {
+  for (double t = 0.0; t < kDuration + 3.0 * kControlInterval; t += kControlInterval) {
     const double part = std::clamp(0.5 * (t - 0.3), 0.0, 1.0);
     const double lifted = part * part * part * (10.0 - 15.0 * part + 6.0 * part * part);
     BodyState state;
@@ -49,7 +49,7 @@ MotionSpline swing(const WorldOptions& options, double swing)
     controls.push_back(rest + lifted * (state - rest));
     controls.back()[2] += 1.4;
   }
-  return {kInterval, controls};
+  return {kControlInterval, controls};
 }
 
 /// The swing whose fastest moment has the wanted angular velocity.

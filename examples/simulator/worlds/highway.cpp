@@ -9,8 +9,8 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kSpeed = 25.0;          // m/s
-constexpr double kFirstStation = 150.0;  // m along the road where the sensor starts
+constexpr double kHighwaySpeed = 25.0;   // m/s
+constexpr double kHighwayStart = 150.0;  // m along the road where the sensor starts
 constexpr double kLastStation = 1260.0;  // m
 constexpr double kOuterLane = -7.2;      // m from the road's middle
 constexpr double kInnerLane = -3.5;      // m
@@ -71,7 +71,7 @@ void addLandmarks(TriangleMesh& mesh, Random& random, const PathLine& line, cons
 /// A lorry that overtakes slowly: for half a minute it is beside the sensor.
 void addOvertakingTruck(World& world, Random& random, const PathLine& line, const Terrain& terrain, double speed)
 {
-  const DriveStyle style = cruising(speed + 0.5, kInnerLane, kFirstStation - 10.0);
+  const DriveStyle style = cruising(speed + 0.5, kInnerLane, kHighwayStart - 10.0);
   MovingObject truck{{}, drive(line, style, {0.0, 2.6, 0.0, 0.0}, terrain, random), 2.5};
   addTruck(truck.shape, random, SE3());
   world.moving.push_back(truck);
@@ -83,7 +83,7 @@ void addTraffic(World& world, Random& random, const PathLine& line, const Terrai
     addVehicle(world, random, line, terrain, cruising(random.uniform(27.0, 30.0), kInnerLane, station), kLorries);
   }
   for (const double ahead : {38.0, 95.0, -30.0}) {
-    addVehicle(world, random, line, terrain, cruising(kSpeed, kOuterLane, kFirstStation + ahead), kLorries);
+    addVehicle(world, random, line, terrain, cruising(kHighwaySpeed, kOuterLane, kHighwayStart + ahead), kLorries);
   }
   const PathLine back = reversed(line);
   for (int i = 0; i < 24; ++i) {
@@ -111,8 +111,8 @@ World makeHighway(const WorldOptions& options)
   addLandmarks(world.still, random, line, terrain);
   // Other ways are driven at other speeds.
   Random own = randomOfPath(options, random);
-  const double speed = options.path == 1 ? kSpeed : own.uniform(20.0, 25.0);
-  DriveStyle style = cruising(speed, kOuterLane, kFirstStation);
+  const double speed = options.path == 1 ? kHighwaySpeed : own.uniform(20.0, 25.0);
+  DriveStyle style = cruising(speed, kOuterLane, kHighwayStart);
   style.last_station = kLastStation;
   world.sensor_motion = drive(line, style, {1.9, 2.6, 0.003, 0.008}, terrain, own);
   random = options.path == 1 ? own : random;

@@ -11,9 +11,9 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kLane = 3.75;      // m, width of a lane; the sensor drives in the right one of two
-constexpr double kReach = 110.0;    // m of ground to each side of the way
-constexpr double kRailClear = 2.5;  // m that rails and their posts keep from the way
+constexpr double kMotorwayLane = 3.75;    // m, width of a lane; the sensor drives in the right one of two
+constexpr double kMotorwayReach = 110.0;  // m of ground to each side of the way
+constexpr double kRailClear = 2.5;        // m that rails and their posts keep from the way
 
 /// What the generator draws from; as it stands, for \ref Family::tune.
 struct MotorwayRanges {
@@ -29,7 +29,7 @@ struct MotorwayRanges {
   Interval car_gap{50.0, 150.0};    ///< m, in each lane
 };
 
-MotorwayRanges rangesOf(Family family)
+MotorwayRanges motorwayRangesOf(Family family)
 {
   MotorwayRanges ranges;
   if (family != Family::tune) {
@@ -60,14 +60,14 @@ void addRail(TriangleMesh& mesh, Random& random, const Way& way, double left)
 /// m to the left of the sensor's lane that the other direction's outer lane ends at.
 double otherEdge(double median)
 {
-  return 1.5 * kLane + median + 2.0 * kLane;
+  return 1.5 * kMotorwayLane + median + 2.0 * kMotorwayLane;
 }
 
 /// A place beside both directions, clear of the whole way.
 bool drawPlace(const Way& way, Random& random, double station, const Interval& aside, double median, SE3& place)
 {
   const double distance = aside.draw(random);
-  const double left = random.chance(0.5) ? otherEdge(median) + distance - 0.5 * kLane : -distance;
+  const double left = random.chance(0.5) ? otherEdge(median) + distance - 0.5 * kMotorwayLane : -distance;
   place = besideWay(way, station, left, M_PI);
   return isClear(way, place.translation.head<2>(), std::min(distance, 8.0) - 0.5);
 }
@@ -110,12 +110,13 @@ void addTraffic(World& world, Random& random, const MotorwayRanges& ranges, cons
 {
   const PathLine back = reversed(way.line);
   for (int lane = 0; lane < 2; ++lane) {
-    const double other = -(2.0 * kLane + median) + (lane == 0 ? 0.0 : -kLane);
+    const double other = -(2.0 * kMotorwayLane + median) + (lane == 0 ? 0.0 : -kMotorwayLane);
     for (double s = 10.0; s < back.length() - 60.0; s += ranges.car_gap.draw(random)) {
       addVehicle(world, random, back, way.terrain, cruising(random.uniform(22.0, 33.0), other, s), 0.15);
     }
     for (double s = 10.0; s < 200.0 && s < way.line.length() - 60.0; s += ranges.car_gap.draw(random)) {
-      addVehicle(world, random, way.line, way.terrain, cruising(random.uniform(20.0, 30.0), lane * kLane, s), 0.15);
+      addVehicle(world, random, way.line, way.terrain, cruising(random.uniform(20.0, 30.0), lane * kMotorwayLane, s),
+                 0.15);
     }
   }
 }
@@ -125,15 +126,15 @@ void addTraffic(World& world, Random& random, const MotorwayRanges& ranges, cons
 World makeMotorway(const WorldOptions& options)
 {
   Random random = randomOfWorld(options, 10);
-  const MotorwayRanges ranges = rangesOf(options.family);
-  const Way way = makeWay(options, {25.0, 200.0, 0.15, 2.0, kReach}, random);
+  const MotorwayRanges ranges = motorwayRangesOf(options.family);
+  const Way way = makeWay(options, {25.0, 200.0, 0.15, 2.0, kMotorwayReach}, random);
   World world;
   world.default_sensor = "hdl64";
   world.sensor_motion = way.motion;
   world.acceleration = way.motion.accelerationBound();
   addGroundAlong(world.still, way, 0.2);
   const double median = ranges.median.draw(random);
-  addRail(world.still, random, way, 1.5 * kLane + 0.5 * median);
+  addRail(world.still, random, way, 1.5 * kMotorwayLane + 0.5 * median);
   const double right_rail = ranges.right_rail.draw(random);
   if (random.chance(ranges.right_rail_chance)) {
     addRail(world.still, random, way, -right_rail);

@@ -11,14 +11,14 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kFirstStation = 200.0;  // m along the road where the sensor starts: it sees as much road behind
-constexpr double kWay = 950.0;           // m to go
-constexpr double kRoadLength = 1350.0;   // m
-constexpr double kLaneWidth = 3.6;       // m
-constexpr double kAcceleration = 2.0;    // m/s^2, a brisk car
-constexpr double kStanding = 0.6;        // s at rest before it moves: so long takes rounding the jerk off
-constexpr double kRailAtTheLeft = 0.25;  // of the rails: beyond the lanes of the other direction
-constexpr double kSeen = 160.0;          // m to each side of the road that there is ground
+constexpr double kOpenRoadStart = 200.0;  // m along the road where the sensor starts: it sees as much road behind
+constexpr double kOpenRoadWay = 950.0;    // m to go
+constexpr double kRoadLength = 1350.0;    // m
+constexpr double kLaneWidth = 3.6;        // m
+constexpr double kAcceleration = 2.0;     // m/s^2, a brisk car
+constexpr double kStanding = 0.6;         // s at rest before it moves: so long takes rounding the jerk off
+constexpr double kRailAtTheLeft = 0.25;   // of the rails: beyond the lanes of the other direction
+constexpr double kSeen = 160.0;           // m to each side of the road that there is ground
 
 /// What the generator draws from; as it stands, for \ref Family::tune.
 struct OpenRoadRanges {
@@ -39,7 +39,7 @@ struct OpenRoadRanges {
   double lorries = 0.1;               ///< of the vehicles
 };
 
-OpenRoadRanges rangesOf(Family family)
+OpenRoadRanges openRoadRangesOf(Family family)
 {
   OpenRoadRanges ranges;
   if (family != Family::tune) {
@@ -130,7 +130,7 @@ void addTraffic(World& world, Random& random, const OpenRoadRanges& ranges, cons
     const bool oncoming = i % 2 == 1;
     const double left = -kLaneWidth * (random.chance(0.5) ? 0.5 : 1.5);
     const double station =
-        oncoming ? random.uniform(20.0, kRoadLength - kFirstStation) : kFirstStation + random.uniform(-120.0, 150.0);
+        oncoming ? random.uniform(20.0, kRoadLength - kOpenRoadStart) : kOpenRoadStart + random.uniform(-120.0, 150.0);
     addVehicle(world, random, oncoming ? back : line, terrain, cruising(ranges.car_speed.draw(random), left, station),
                ranges.lorries);
   }
@@ -139,8 +139,8 @@ void addTraffic(World& world, Random& random, const OpenRoadRanges& ranges, cons
 DriveStyle sensorDrive(const WorldOptions& options, double speed)
 {
   // Every second way is driven in the other lane.
-  DriveStyle style = cruising(speed, -kLaneWidth * (options.path % 2 == 0 ? 0.5 : 1.5), kFirstStation);
-  style.last_station = kFirstStation + kWay;
+  DriveStyle style = cruising(speed, -kLaneWidth * (options.path % 2 == 0 ? 0.5 : 1.5), kOpenRoadStart);
+  style.last_station = kOpenRoadStart + kOpenRoadWay;
   style.acceleration = kAcceleration;
   if (options.begin == Begin::rest) {
     style.start_speed = 0.0;
@@ -154,7 +154,7 @@ DriveStyle sensorDrive(const WorldOptions& options, double speed)
 World makeOpenRoad(const WorldOptions& options)
 {
   Random random = randomOfWorld(options, 8);
-  const OpenRoadRanges ranges = rangesOf(options.family);
+  const OpenRoadRanges ranges = openRoadRangesOf(options.family);
   World world;
   Terrain terrain;
   terrain.addWaves(random, ranges.rolling.draw(random), ranges.hills.low, ranges.hills.high);

@@ -11,9 +11,9 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kLane = 3.3;        // m, width of a lane; the sensor drives in the right one of two
+constexpr double kTownLane = 3.3;    // m, width of a lane; the sensor drives in the right one of two
 constexpr double kDepth = 11.0;      // m of a house behind its front that must be clear of the way
-constexpr double kReach = 70.0;      // m of ground to each side of the way
+constexpr double kTownReach = 70.0;  // m of ground to each side of the way
 constexpr double kHouseClear = 7.0;  // m from the way to the nearest wall
 constexpr double kCarClear = 2.4;    // m from the way to the middle of a parked car
 
@@ -30,7 +30,7 @@ struct TownRanges {
   Interval oncoming{40.0, 120.0};  ///< m from one car to the next
 };
 
-TownRanges rangesOf(Family family)
+TownRanges townRangesOf(Family family)
 {
   TownRanges ranges;
   if (family != Family::tune) {
@@ -70,7 +70,7 @@ void addHouses(TriangleMesh& mesh, Random& random, const TownRanges& ranges, con
   double next_crossing = ranges.crossing.draw(random);
   for (double station = 0.0; station < way.line.length();) {
     const double width = ranges.width.draw(random);
-    const double left = 0.5 * kLane + side * (front + random.uniform(0.0, 0.8));
+    const double left = 0.5 * kTownLane + side * (front + random.uniform(0.0, 0.8));
     // At the left a facade begins at its far end and turns back.
     const SE3 place = besideWay(way, side > 0.0 ? station + width : station, left, side > 0.0 ? M_PI : 0.0);
     if (hasRoom(way, place, width)) {
@@ -87,7 +87,7 @@ void addHouses(TriangleMesh& mesh, Random& random, const TownRanges& ranges, con
 /// Kerbs, and what stands on the pavements.
 void addFurnitureAlong(TriangleMesh& mesh, Random& random, const TownRanges& ranges, const Way& way, double side)
 {
-  const double kerb = 0.5 * kLane + side * (kLane + 2.1);
+  const double kerb = 0.5 * kTownLane + side * (kTownLane + 2.1);
   addStrip(mesh, random, way.line, way.terrain, {0.0, way.line.length(), 2.0},
            {{kerb, -0.05}, {kerb, 0.12}, {kerb + side * 2.0, 0.12}}, 0.0, 0.3);
   const auto clear = [&way](const SE3& place, double distance) {
@@ -125,7 +125,7 @@ void addTraffic(World& world, Random& random, const TownRanges& ranges, const Wa
     style.start_speed = 5.0;
     style.acceleration = 1.5;
     style.side_acceleration = 2.2;
-    style.left = -kLane;
+    style.left = -kTownLane;
     style.first_station = station;
     addVehicle(world, random, back, way.terrain, style, 0.05);
   }
@@ -136,8 +136,8 @@ void addTraffic(World& world, Random& random, const TownRanges& ranges, const Wa
 World makeTown(const WorldOptions& options)
 {
   Random random = randomOfWorld(options, 9);
-  const TownRanges ranges = rangesOf(options.family);
-  const Way way = makeWay(options, {11.0, 90.0, 1.4, 1.5, kReach}, random);
+  const TownRanges ranges = townRangesOf(options.family);
+  const Way way = makeWay(options, {11.0, 90.0, 1.4, 1.5, kTownReach}, random);
   World world;
   world.default_sensor = "hdl64";
   world.sensor_motion = way.motion;

@@ -9,8 +9,8 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kSpeed = 12.0;  // m/s
-constexpr double kLane = -2.2;   // m from the middle of the street: traffic keeps to the right
+constexpr double kUrbanSpeed = 12.0;  // m/s
+constexpr double kUrbanLane = -2.2;   // m from the middle of the street: traffic keeps to the right
 
 /// The crossings: a grid that is nowhere quite square.
 using Crossings = std::array<std::array<Eigen::Vector2d, 5>, 5>;
@@ -57,14 +57,14 @@ DriveStyle cityDriving(double speed)
   style.speed = speed;
   style.acceleration = 1.5;
   style.side_acceleration = 2.2;
-  style.left = kLane;
+  style.left = kUrbanLane;
   return style;
 }
 
 void addTraffic(World& world, Random& random, const Crossings& at, const PathLine& way, const Terrain& terrain)
 {
   for (const double ahead : {22.0, 48.0}) {
-    DriveStyle style = cityDriving(kSpeed);
+    DriveStyle style = cityDriving(kUrbanSpeed);
     style.first_station = ahead;
     addCarOn(world, random, way, terrain, style);
   }
@@ -133,7 +133,7 @@ World makeUrban(const WorldOptions& options)
   double length = 0.0;
   // Every second way goes round the loop the other way, in the other lane; the third and fourth begin elsewhere.
   const PathLine way = loop(at, options.path % 2 == 0, length);
-  DriveStyle style = cityDriving(kSpeed);
+  DriveStyle style = cityDriving(kUrbanSpeed);
   Random own = randomOfPath(options, random);
   style.first_station = options.path > 2 ? own.uniform(20.0, 200.0) : 0.0;
   style.last_station = style.first_station + length;
@@ -142,7 +142,7 @@ World makeUrban(const WorldOptions& options)
   world.acceleration = 5.0;
   addTraffic(world, random, at, way, terrain);
   if (options.truck) {
-    style.left = kLane + 3.6;
+    style.left = kUrbanLane + 3.6;
     MovingObject truck{{}, drive(way, style, {0.0, 2.5, 0.0, 0.0}, terrain, own), 2.5};
     addTruck(truck.shape, own, SE3());
     world.moving.push_back(truck);

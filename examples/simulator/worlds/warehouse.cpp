@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHalfLength = 30.0;  // m, the hall reaches from -x to x
 constexpr double kHalfWidth = 20.0;   // m
-constexpr double kHeight = 8.5;       // m
+constexpr double kHallHeight = 8.5;   // m
 constexpr int kRows = 6;              // rows of racks, two racks back to back
 constexpr double kRowSpacing = 5.5;   // m
 constexpr int kBays = 13;
@@ -67,7 +67,7 @@ void addWall(TriangleMesh& mesh, Random& random, const SE3& world_T_wall, double
     columns.insert(columns.end(), {x, x + 0.4});
   }
   columns.push_back(length);
-  Relief relief(columns, {0.0, 1.2, 3.5, kHeight}, {0.0, 0.5});
+  Relief relief(columns, {0.0, 1.2, 3.5, kHallHeight}, {0.0, 0.5});
   for (std::size_t c = 0; c + 1 < columns.size(); ++c) {
     const bool gate = c % 2 == 0 && random.chance(0.25);
     for (std::size_t r = 0; r < 3; ++r) {
@@ -83,7 +83,7 @@ void addHall(TriangleMesh& mesh, Random& random)
   addWall(mesh, random, upright(kHalfLength, -kHalfWidth, 0.0, M_PI / 2.0), 2.0 * kHalfWidth);
   addWall(mesh, random, upright(kHalfLength, kHalfWidth, 0.0, M_PI), 2.0 * kHalfLength);
   addWall(mesh, random, upright(-kHalfLength, kHalfWidth, 0.0, -M_PI / 2.0), 2.0 * kHalfWidth);
-  for (const double z : {0.0, kHeight}) {
+  for (const double z : {0.0, kHallHeight}) {
     const double x = kHalfLength + 1.0;
     const double y = kHalfWidth + 1.0;
     addQuad(
@@ -92,7 +92,7 @@ void addHall(TriangleMesh& mesh, Random& random)
         0.4);
   }
   for (double x = -kHalfLength + 3.0; x < kHalfLength; x += 6.0) {
-    addBox(mesh, upright(x, 0.0, kHeight - 0.8), {0.25, 2.0 * kHalfWidth, 0.5}, 0.5);
+    addBox(mesh, upright(x, 0.0, kHallHeight - 0.8), {0.25, 2.0 * kHalfWidth, 0.5}, 0.5);
   }
 }
 
@@ -100,7 +100,7 @@ void addFloorObjects(TriangleMesh& mesh, Random& random)
 {
   for (int row = 0; row < kRows; ++row) {
     for (const double x : {-19.8, 19.8}) {
-      addBox(mesh, upright(x, rowPlace(row), 0.0), {0.45, 0.45, kHeight}, 0.5);
+      addBox(mesh, upright(x, rowPlace(row), 0.0), {0.45, 0.45, kHallHeight}, 0.5);
     }
   }
   for (int i = 0; i < 6; ++i) {

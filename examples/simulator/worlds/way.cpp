@@ -10,7 +10,7 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kInterval = 0.1;  // s between the poses of a trajectory
+constexpr double kPoseInterval = 0.1;  // s between the poses of a trajectory
 
 /// A drive along straight legs with bends between them.
 std::vector<BodyState> drawStates(const DrawnWay& drawn, double length, Random& random)
@@ -35,7 +35,7 @@ std::vector<BodyState> drawStates(const DrawnWay& drawn, double length, Random& 
   style.last_station = length;
   const MotionSpline motion = drive(line, style, {kLidarHeight, 2.6, 0.004, 0.006}, terrain, random);
   std::vector<BodyState> states;
-  for (double t = 0.0; t <= motion.duration(); t += kInterval) {
+  for (double t = 0.0; t <= motion.duration(); t += kPoseInterval) {
     states.push_back(motion.state(t));
   }
   return states;
@@ -93,7 +93,7 @@ Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random)
       state.head<2>() += left * Eigen::Vector2d(-std::sin(state[3]), std::cos(state[3]));
     }
   }
-  return {PathLine(places, 2.0), MotionSpline(kInterval, states), terrain, places, *raster};
+  return {PathLine(places, 2.0), MotionSpline(kPoseInterval, states), terrain, places, *raster};
 }
 
 bool isClear(const Way& way, const Eigen::Vector2d& place, double distance)

@@ -8,7 +8,7 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::uint32_t kPointBytes = 19;  ///< offset_time, x, y, z, reflectivity, tag, line
+constexpr std::uint32_t kLivoxPointBytes = 19;  ///< offset_time, x, y, z, reflectivity, tag, line
 
 void describePoints(pcl::PCLPointCloud2& cloud)
 {
@@ -41,17 +41,17 @@ void decodeLivoxCustom(MessageReader& message, pcl::PCLPointCloud2& cloud)
   (void)message.number<std::uint8_t>();   // lidar_id
   message.skip(3);                        // reserved
   const auto points = message.number<std::uint32_t>();
-  if (points > message.left() / kPointBytes) {
+  if (points > message.left() / kLivoxPointBytes) {
     message.fail("the message has " + std::to_string(message.left()) + " bytes for " + std::to_string(points) +
-                 " points of " + std::to_string(kPointBytes));
+                 " points of " + std::to_string(kLivoxPointBytes));
   }
   describePoints(cloud);
   cloud.height = 1;
   cloud.width = points;
-  cloud.row_step = points * kPointBytes;
+  cloud.row_step = points * kLivoxPointBytes;
   cloud.is_bigendian = 0;
   cloud.is_dense = 0;
-  cloud.data.resize(static_cast<std::size_t>(points) * kPointBytes);
+  cloud.data.resize(static_cast<std::size_t>(points) * kLivoxPointBytes);
   std::uint8_t* target = cloud.data.data();
   for (std::uint32_t i = 0; i < points; ++i) {
     target = store(message.number<std::uint32_t>(), target);

@@ -11,7 +11,7 @@ namespace pcl_floam {
 namespace {
 
 constexpr std::uint32_t kMostFields = 256;
-constexpr std::uint64_t kMostPoints = std::numeric_limits<std::int32_t>::max();
+constexpr std::uint64_t kMostMessagePoints = std::numeric_limits<std::int32_t>::max();
 
 /// Bytes of one number of a field's type; 0 for types that the message does not know.
 std::uint32_t bytesOf(std::uint8_t datatype)
@@ -61,7 +61,7 @@ void takePoints(const MessageReader& message, std::string_view data, pcl::PCLPoi
   const std::uint64_t row = static_cast<std::uint64_t>(cloud.width) * cloud.point_step;
   // Drivers of one row, and some of several, do not fill it in.
   const std::uint64_t step = cloud.height <= 1 || cloud.row_step < row ? row : cloud.row_step;
-  if (static_cast<std::uint64_t>(cloud.width) * cloud.height > kMostPoints ||
+  if (static_cast<std::uint64_t>(cloud.width) * cloud.height > kMostMessagePoints ||
       row > std::numeric_limits<std::uint32_t>::max()) {
     message.fail("the cloud has more points than PCL can count: the message is damaged");
   }

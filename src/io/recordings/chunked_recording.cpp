@@ -9,8 +9,6 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr double kSecondsPerNanosecond = 1e-9;
-
 /// The messages of some topics in one chunk.
 class ChunkMessages : public RecordSink {
 public:

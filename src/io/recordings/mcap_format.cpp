@@ -8,13 +8,13 @@ namespace pcl_floam {
 
 namespace {
 
-enum Opcode : std::uint8_t {
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07
+enum McapOpcode : std::uint8_t {
+  kMcapFooter = 0x02,
+  kMcapSchema = 0x03,
+  kMcapChannel = 0x04,
+  kMcapMessage = 0x05,
+  kMcapChunk = 0x06,
+  kMcapMessageIndex = 0x07
 };
 
 constexpr std::uint64_t kRecordHead = 9;    ///< bytes: opcode and length
@@ -67,7 +67,7 @@ ChunkPlace takeChunk(ByteReader record, std::uint64_t position, std::uint64_t le
   return chunk;
 }
 
-[[noreturn]] void failCutOff(const BinaryFile& file, std::uint64_t position)
+[[noreturn]] void failCutOffMcap(const BinaryFile& file, std::uint64_t position)
 {
   throw FileError(file.path(), "byte " + std::to_string(file.size()) + ": the file ends within the record at byte " +
                                    std::to_string(position) + ": the recording was cut off, what followed is missing");
@@ -83,7 +83,7 @@ void McapFormat::walkFile(BinaryFile& file, RecordSink& sink)
   for (std::uint64_t position = kMcapMagic.size(); position < file.size();) {
     const std::uint64_t left = file.size() - position;
     if (left < kRecordHead) {
-      failCutOff(file, position);
+      failCutOffMcap(file, position);
     }
     const Origin origin{file.path(), "", position};
     ByteReader head(file.view(position, kRecordHead), origin);
@@ -93,13 +93,13 @@ void McapFormat::walkFile(BinaryFile& file, RecordSink& sink)
       origin.fail(0, "no record begins here: the file is damaged, what follows is not read");
     }
     if (length > left - kRecordHead) {
-      if (opcode == kChunk && left > kRecordHead) {
+      if (opcode == kMcapChunk && left > kRecordHead) {
         const Origin within{file.path(), "", position + kRecordHead};
         sink.chunk(takeChunk({file.viewUpTo(within.begin, kLongestChunkHead), within}, position, length, left));
       }
-      failCutOff(file, position);
+      failCutOffMcap(file, position);
     }
-    if (opcode == kFooter) {
+    if (opcode == kMcapFooter) {
       return;
     }
     takeFromFile(opcode, file, position, length, sink);
@@ -118,11 +118,11 @@ void McapFormat::takeFromFile(std::uint8_t opcode, BinaryFile& file, std::uint64
     return ByteReader(file.view(origin.begin, std::min(length, most)), origin);
   };
   switch (opcode) {
-    case kChunk: sink.chunk(takeChunk(content(kLongestChunkHead), position, length, file.size() - position)); break;
-    case kMessageIndex: takeIndex(content(length), sink); break;
-    case kMessage: takeCommon(opcode, content(kMessageHead), position, sink); break;
-    case kSchema:
-    case kChannel: takeCommon(opcode, content(length), position, sink); break;
+    case kMcapChunk: sink.chunk(takeChunk(content(kLongestChunkHead), position, length, file.size() - position)); break;
+    case kMcapMessageIndex: takeIndex(content(length), sink); break;
+    case kMcapMessage: takeCommon(opcode, content(kMessageHead), position, sink); break;
+    case kMcapSchema:
+    case kMcapChannel: takeCommon(opcode, content(length), position, sink); break;
     default: break;
   }
 }
@@ -141,11 +141,11 @@ void McapFormat::walkChunk(std::string_view records, const Origin& origin, Recor
 
 void McapFormat::takeCommon(std::uint8_t opcode, ByteReader record, std::uint64_t position, RecordSink& sink)
 {
-  if (opcode == kSchema) {
+  if (opcode == kMcapSchema) {
     takeSchema(record);
-  } else if (opcode == kChannel) {
+  } else if (opcode == kMcapChannel) {
     takeChannel(record, sink);
-  } else if (opcode == kMessage) {
+  } else if (opcode == kMcapMessage) {
     const MessageRecord message = takeMessage(record);
     sink.message(message.id, message.time, position);
   }
@@ -172,7 +172,7 @@ MessageRecord McapFormat::messageIn(std::string_view records, std::uint64_t posi
 {
   ByteReader reader(records, origin);
   reader.skip(position);
-  if (reader.number<std::uint8_t>() != kMessage) {
+  if (reader.number<std::uint8_t>() != kMcapMessage) {
     reader.fail("no message begins here, as the index tells: the file is damaged");
   }
   const auto length = reader.number<std::uint64_t>();

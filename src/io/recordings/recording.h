@@ -13,6 +13,8 @@
 
 namespace pcl_floam {
 
+inline constexpr double kSecondsPerNanosecond = 1e-9;
+
 /// What a recording says of a topic.
 struct RecordedTopic {
   std::string name;

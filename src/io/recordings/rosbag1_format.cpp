@@ -9,13 +9,13 @@ namespace pcl_floam {
 
 namespace {
 
-enum Opcode : std::uint8_t {
-  kMessageData = 0x02,
+enum BagOpcode : std::uint8_t {
+  kBagMessageData = 0x02,
   kBagHeader = 0x03,
-  kIndexData = 0x04,
-  kChunk = 0x05,
-  kChunkInfo = 0x06,
-  kConnection = 0x07
+  kBagIndexData = 0x04,
+  kBagChunk = 0x05,
+  kBagChunkInfo = 0x06,
+  kBagConnection = 0x07
 };
 
 constexpr std::uint64_t kNanosecondsPerSecond = 1000000000;
@@ -74,7 +74,7 @@ struct FileRecord {
   std::uint64_t end = 0;  ///< may be beyond the file's
 };
 
-[[noreturn]] void failCutOff(const BinaryFile& file, std::uint64_t position)
+[[noreturn]] void failCutOffBag(const BinaryFile& file, std::uint64_t position)
 {
   throw FileError(file.path(), "byte " + std::to_string(file.size()) + ": the bag ends within the record at byte " +
                                    std::to_string(position) + ": it was cut off, what followed is missing");
@@ -86,7 +86,7 @@ FileRecord recordAt(BinaryFile& file, std::uint64_t position)
   const Origin origin{file.path(), "", position};
   const auto lengthAt = [&](std::uint64_t place) {
     if (place > file.size() || file.size() - place < kLength) {
-      failCutOff(file, position);
+      failCutOffBag(file, position);
     }
     return ByteReader(file.view(place, kLength), origin).number<std::uint32_t>();
   };
@@ -173,12 +173,12 @@ public:
       const Origin origin{file_.path(), "", record.header};
       const Fields header(header_bytes, origin);
       const auto opcode = header.number<std::uint8_t>("op");
-      if (opcode == kChunk && record.data <= file_.size()) {
+      if (opcode == kBagChunk && record.data <= file_.size()) {
         sink_.chunk(takeChunk(header, record, position, origin, file_.size()));
         ++chunks_;
       }
       if (record.end > file_.size()) {
-        failCutOff(file_, position);
+        failCutOffBag(file_, position);
       }
       take(opcode, header, record, position);
       position = record.end;
@@ -193,15 +193,15 @@ private:
     const auto data = [&] { return file_.view(record.data, record.data_bytes); };
     switch (opcode) {
       case kBagHeader: bag_ = takeBagHeader(header, origin); break;
-      case kIndexData: takeIndex(header, {data(), origin}, sink_); break;
-      case kConnection: takeConnection(header, {data(), origin}, sink_); break;
-      case kMessageData: {
+      case kBagIndexData: takeIndex(header, {data(), origin}, sink_); break;
+      case kBagConnection: takeConnection(header, {data(), origin}, sink_); break;
+      case kBagMessageData: {
         const MessageRecord message = messageFrom(header, {});
         sink_.message(message.id, message.time, position);
         break;
       }
-      case kChunkInfo: ++infos_; break;
-      case kChunk: break;
+      case kBagChunkInfo: ++infos_; break;
+      case kBagChunk: break;
       default: origin.fail(0, "a record of kind " + std::to_string(opcode) + " is unknown: the file is damaged");
     }
   }
@@ -253,9 +253,9 @@ void Rosbag1Format::walkChunk(std::string_view records, const Origin& origin, Re
     const Fields header(reader.counted(), within);
     const std::string_view data = reader.counted();
     const auto opcode = header.number<std::uint8_t>("op");
-    if (opcode == kConnection) {
+    if (opcode == kBagConnection) {
       takeConnection(header, {data, within}, sink);
-    } else if (opcode == kMessageData) {
+    } else if (opcode == kBagMessageData) {
       const MessageRecord message = messageFrom(header, data);
       sink.message(message.id, message.time, position);
     } else {
@@ -270,7 +270,7 @@ MessageRecord Rosbag1Format::messageIn(std::string_view records, std::uint64_t p
   reader.skip(position);
   const Fields header(reader.counted(), origin);
   const std::string_view data = reader.counted();
-  if (header.number<std::uint8_t>("op") != kMessageData) {
+  if (header.number<std::uint8_t>("op") != kBagMessageData) {
     reader.fail("no message begins here, as the index tells: the file is damaged");
   }
   return messageFrom(header, data);

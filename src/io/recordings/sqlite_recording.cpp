@@ -150,7 +150,6 @@ public:
     if (!read_->next()) {
       throw FileError(path_, "message " + std::to_string(entry.id) + " is gone: the recording is damaged");
     }
-    constexpr double kSecondsPerNanosecond = 1e-9;
     return {read_->bytes(0), kSecondsPerNanosecond * static_cast<double>(entry.time),
             "message " + std::to_string(entry.id) + ", "};
   }

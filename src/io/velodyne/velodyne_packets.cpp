@@ -102,7 +102,7 @@ struct CloudPoint {
   std::uint16_t ring;
 };
 
-constexpr std::uint32_t kPointBytes = 22;
+constexpr std::uint32_t kVelodynePointBytes = 22;
 
 }  // namespace
 
@@ -224,15 +224,15 @@ void VelodyneCloudBuilder::addBlock(const VelodynePacket& packet, std::size_t bl
                            static_cast<float>(time + delay),
                            laser.ring};
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(&point);
-    cloud_.data.insert(cloud_.data.end(), bytes, bytes + kPointBytes);
+    cloud_.data.insert(cloud_.data.end(), bytes, bytes + kVelodynePointBytes);
   }
 }
 
 void VelodyneCloudBuilder::finish()
 {
   cloud_.height = 1;
-  cloud_.width = static_cast<std::uint32_t>(cloud_.data.size() / kPointBytes);
-  cloud_.row_step = cloud_.width * kPointBytes;
+  cloud_.width = static_cast<std::uint32_t>(cloud_.data.size() / kVelodynePointBytes);
+  cloud_.row_step = cloud_.width * kVelodynePointBytes;
   cloud_.is_bigendian = 0;
   cloud_.is_dense = 1;
 }
