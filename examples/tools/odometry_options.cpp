@@ -143,8 +143,11 @@ void addCompensationOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Motion compensation");
   addChoice(app, "--engine", o.parameters.engine,
-            {{"features", OdometryEngine::features}, {"surfaces", OdometryEngine::surfaces}},
-            "what scans are registered by; surfaces hold on open roads");
+            {{"auto", OdometryEngine::automatic},
+             {"features", OdometryEngine::features},
+             {"surfaces", OdometryEngine::surfaces}},
+            "what scans are registered by; surfaces hold on open roads\n"
+            "and need no scan lines: auto takes them where none are found");
   addChoice(app, "--compensation", o.parameters.compensation,
             {{"continuous", CompensationMode::continuous},
              {"two-stage", CompensationMode::two_stage},

@@ -57,7 +57,8 @@ Json sigma(const Matrix6& covariance)
 
 Json structureJson(const OdometryReport& last)
 {
-  return {{"scan_lines", last.scan_lines},
+  return {{"engine", toString(last.engine)},
+          {"scan_lines", last.scan_lines},
           {"scan_line_source", toString(last.scan_line_source)},
           {"scan_line_confidence", last.scan_line_confidence},
           {"timing_source", toString(last.timing_source)},
@@ -101,6 +102,8 @@ std::string describe(const RunSummary& summary)
       formatted("%-22s %zu of %zu, %zu tracked, %zu predicted, %zu unreadable", "scans", result.poses.size(),
                 summary.planned_scans, result.count(TrackingState::tracked) + result.count(TrackingState::initialized),
                 result.count(TrackingState::predicted), result.unreadable.size());
+  text += formatted("\n%-22s %s%s", "registered by", toString(last.engine),
+                    last.scan_lines == 0 ? ", since no scan lines were found" : "");
   text += formatted("\n%-22s %zu by %s, times by %s", "scan lines", last.scan_lines, toString(last.scan_line_source),
                     toString(last.timing_source));
   if (result.with_weak_directions > 0) {

@@ -23,7 +23,12 @@ const char* toString(TrackingState state)
 
 const char* toString(OdometryEngine engine)
 {
-  return engine == OdometryEngine::surfaces ? "surfaces" : "features";
+  switch (engine) {
+    case OdometryEngine::automatic: return "auto";
+    case OdometryEngine::features: return "features";
+    case OdometryEngine::surfaces: return "surfaces";
+  }
+  return "unknown";
 }
 
 void validate(const OdometryParameters& p)
@@ -54,7 +59,55 @@ struct OdometryPipeline::Impl {
     return std::visit(visitor, engine);
   }
 
+  const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
+  {
+    visit([&](auto& odometry) { odometry.track(scan, stamp); });
+    if (isUndecided()) {
+      FeatureOdometry& features = std::get<FeatureOdometry>(engine);
+      is_decided = features.lines.valid();
+      if (features.lines.failure == ScanLineFailure::no_line_structure) {
+        takeSurfaces(features);
+        visit([&](auto& odometry) { odometry.track(scan, stamp); });
+      }
+    }
+    return noteEngine();
+  }
+
+  const OdometryReport& miss(std::optional<double> stamp)
+  {
+    visit([&](auto& odometry) { odometry.miss(stamp); });
+    return noteEngine();
+  }
+
+private:
+  [[nodiscard]] bool isUndecided()
+  {
+    return !is_decided && visit([](auto& odometry) { return odometry.parameters.engine; }) == OdometryEngine::automatic;
+  }
+
+  /// From before the first scan on; what was given to begin with stays.
+  void takeSurfaces(FeatureOdometry& features)
+  {
+    SurfaceOdometry surfaces(features.parameters);
+    surfaces.initial_pose = features.initial_pose;
+    if (features.prior_map) {
+      surfaces.localizeIn(std::move(features.map), *features.prior_map);
+    }
+    engine = std::move(surfaces);
+    is_decided = true;
+  }
+
+  const OdometryReport& noteEngine()
+  {
+    OdometryReport& report = visit([](auto& odometry) -> OdometryReport& { return odometry.report; });
+    report.engine =
+        std::holds_alternative<SurfaceOdometry>(engine) ? OdometryEngine::surfaces : OdometryEngine::features;
+    report.engine = isUndecided() ? OdometryEngine::automatic : report.engine;
+    return report;
+  }
+
   Engine engine;
+  bool is_decided = false;  // where that is automatic
 };
 
 OdometryPipeline::OdometryPipeline(const OdometryParameters& parameters)
@@ -76,12 +129,12 @@ OdometryPipeline& OdometryPipeline::operator=(const OdometryPipeline& other)
 
 const OdometryReport& OdometryPipeline::track(const CloudView& scan, std::optional<double> stamp)
 {
-  return impl_->visit([&](auto& odometry) -> const OdometryReport& { return odometry.track(scan, stamp); });
+  return impl_->track(scan, stamp);
 }
 
 const OdometryReport& OdometryPipeline::trackMissing(std::optional<double> stamp)
 {
-  return impl_->visit([&](auto& odometry) -> const OdometryReport& { return odometry.miss(stamp); });
+  return impl_->miss(stamp);
 }
 
 const OdometryReport& OdometryPipeline::report() const

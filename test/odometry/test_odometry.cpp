@@ -339,13 +339,13 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
   const Cloud scan = sweep([](double) { return SE3(); }, 0);
   for (int k = 0; k < 5; ++k) {
     odometry.track(scan);
+    EXPECT_EQ(odometry.report().engine == OdometryEngine::surfaces, defaults().engine == OdometryEngine::surfaces);
     EXPECT_LT(odometry.pose().translation.norm(), 0.01);
     EXPECT_LT(rotationAngle(odometry.pose().rotation), 1e-3);
     EXPECT_EQ(odometry.report().keyframe, k == 0);
   }
 }
 
-#ifdef PCL_FLOAM_TEST_SURFACES
 /// As of a lidar that has none: x, y, z alone, in any order and in a frame that is turned by any rotation. Each scan is
 /// of one instant.
 TEST(Odometry, NeedsNoScanLines)
@@ -365,9 +365,9 @@ TEST(Odometry, NeedsNoScanLines)
     EXPECT_EQ(report.scan_lines, 0U);
     EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
     EXPECT_LT((odometry.pose().translation - turn * steadyPath(k).translation).norm(), 0.05) << "scan " << k;
+    EXPECT_EQ(report.engine, OdometryEngine::surfaces);
   }
 }
-#endif
 
 TEST(Odometry, LocalizesInAMapMadeBefore)
 {

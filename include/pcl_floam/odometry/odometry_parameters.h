@@ -9,27 +9,14 @@
 #include <pcl_floam/filters/sensor_model.h>
 #include <pcl_floam/map/keyframe_policy.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/odometry/odometry_engine.h>
 #include <pcl_floam/registration/registration_parameters.h>
-
-#include <cstdint>
 
 namespace pcl_floam {
 
-/// What the scans are registered by.
-enum class OdometryEngine : std::uint8_t {
-  /// The paper's features, with the nearest points of the map. The quicker one, and the better one at close range.
-  features,
-  /// Points taken by space and the paper's edges, with surfaces of a pyramid of voxels that remembers which lasers saw
-  /// them. Holds on open roads, where the sensor's own rings on the ground look like rest; and for lidars without scan
-  /// lines. Of the registration's parameters it uses `locked` alone.
-  surfaces
-};
-
-[[nodiscard]] const char* toString(OdometryEngine engine);
-
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
-  OdometryEngine engine = OdometryEngine::features;
+  OdometryEngine engine = OdometryEngine::automatic;
   SensorModel sensor;  ///< default "auto"
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   ScanTimingSource timing_source = ScanTimingSource::automatic;

@@ -5,6 +5,7 @@
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/odometry/odometry_engine.h>
 #include <pcl_floam/registration/registration_report.h>
 
 #include <array>
@@ -61,6 +62,7 @@ struct OdometryReport {
   /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map
   /// without an earlier one took in by then stays. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
+  OdometryEngine engine = OdometryEngine::automatic;  ///< which one was taken; `automatic` while none is
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
