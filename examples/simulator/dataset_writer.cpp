@@ -1,15 +1,18 @@
 #include "dataset_writer.h"
 
 #include <pcl/io/pcd_io.h>
+#include <pcl/PCLPointCloud2.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pcl_floam::simulator {
 
@@ -45,6 +48,58 @@ int writeEmpty(const std::filesystem::path& file)
   stream << "VERSION 0.7\nFIELDS x y z intensity time ring\nSIZE 4 4 4 4 4 2\nTYPE F F F F F U\nCOUNT 1 1 1 1 1 1\n"
          << "WIDTH 0\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 0\nDATA binary\n";
   return stream.good() ? 0 : -1;
+}
+
+void addField(pcl::PCLPointCloud2& cloud, const char* name, std::uint8_t type, std::uint32_t size)
+{
+  pcl::PCLPointField field;
+  field.name = name;
+  field.offset = cloud.point_step;
+  field.datatype = type;
+  field.count = 1;
+  cloud.fields.push_back(field);
+  cloud.point_step += size;
+}
+
+template <typename Value>
+void append(std::vector<std::uint8_t>& data, const Value& value)
+{
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&value);
+  data.insert(data.end(), bytes, bytes + sizeof(value));
+}
+
+/// The fields of Livox's `PointXYZRTLT`, as its driver writes them: without padding.
+pcl::PCLPointCloud2 livoxCloud(const Sweep& sweep)
+{
+  constexpr std::uint8_t kGoodReturn = 0x10;
+  pcl::PCLPointCloud2 cloud;
+  for (const char* name : {"x", "y", "z", "intensity"}) {
+    addField(cloud, name, pcl::PCLPointField::FLOAT32, 4);
+  }
+  addField(cloud, "tag", pcl::PCLPointField::UINT8, 1);
+  addField(cloud, "line", pcl::PCLPointField::UINT8, 1);
+  addField(cloud, "timestamp", pcl::PCLPointField::FLOAT64, 8);
+  for (const PointXYZIRT& point : sweep.cloud) {
+    for (const float number : {point.x, point.y, point.z, point.intensity}) {
+      append(cloud.data, number);
+    }
+    append(cloud.data, kGoodReturn);
+    append(cloud.data, static_cast<std::uint8_t>(point.ring));
+    append(cloud.data, 1e9 * (sweep.start_time + static_cast<double>(point.time)));
+  }
+  cloud.height = 1;
+  cloud.width = static_cast<std::uint32_t>(sweep.cloud.size());
+  cloud.row_step = cloud.width * cloud.point_step;
+  return cloud;
+}
+
+int writePcd(const std::filesystem::path& file, const Sweep& sweep, DatasetFormat format)
+{
+  if (sweep.cloud.empty()) {
+    return writeEmpty(file);
+  }
+  return format == DatasetFormat::livox ? pcl::PCDWriter().writeBinary(file.string(), livoxCloud(sweep))
+                                        : pcl::PCDWriter().writeBinary(file.string(), sweep.cloud);
 }
 
 void writePose(std::ofstream& stream, const SE3& pose)
@@ -98,7 +153,7 @@ void writeKittiBin(const std::filesystem::path& file, const Sweep& sweep)
 }
 
 DatasetWriter::DatasetWriter(const std::filesystem::path& folder, DatasetFormat format)
-    : scans_(folder / (format == DatasetFormat::pcd ? "scans" : "velodyne")), format_(format)
+    : scans_(folder / (format == DatasetFormat::kitti ? "velodyne" : "scans")), format_(format)
 {
   std::error_code error;
   std::filesystem::create_directories(scans_, error);
@@ -112,11 +167,11 @@ DatasetWriter::DatasetWriter(const std::filesystem::path& folder, DatasetFormat 
 
 void DatasetWriter::write(const Sweep& sweep)
 {
-  if (format_ == DatasetFormat::pcd) {
+  if (format_ != DatasetFormat::kitti) {
     const std::filesystem::path file = scans_ / fileName(sweep.number, ".pcd");
     int result = -1;
     try {
-      result = sweep.cloud.empty() ? writeEmpty(file) : pcl::PCDWriter().writeBinary(file.string(), sweep.cloud);
+      result = writePcd(file, sweep, format_);
     } catch (const pcl::IOException& exception) {
       throw std::runtime_error(file.string() + ": " + exception.what());
     }

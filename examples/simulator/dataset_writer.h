@@ -10,8 +10,9 @@
 namespace pcl_floam::simulator {
 
 enum class DatasetFormat {
-  pcd,   ///< scans/000000.pcd ...: binary, x y z intensity ring time, in firing order
-  kitti  ///< velodyne/000000.bin ...: float32 x y z intensity, ring by ring as KITTI's files are
+  pcd,    ///< scans/000000.pcd ...: binary, x y z intensity ring time, in firing order
+  livox,  ///< the same with what Livox's driver writes: x y z intensity tag line timestamp (ns, float64)
+  kitti   ///< velodyne/000000.bin ...: float32 x y z intensity, ring by ring as KITTI's files are
 };
 
 /// A folder of scans with times.txt (s, start of each sweep) and the sensor's exact poses at each sweep's start,

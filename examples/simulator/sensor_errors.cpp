@@ -40,6 +40,13 @@ SensorErrors realErrors(std::string_view sensor)
 {
   SensorErrors errors = spinning();
   const bool ouster = sensor.substr(0, 2) == "os";
+  if (lidar(sensor).pattern != ScanPattern::turning) {
+    // Livox's data sheets: 2 cm of range noise, 0.1 to 0.15 degrees of angle, beams of 0.03 to 0.28 degrees.
+    errors.range_step = 0.001;
+    errors.beam_divergence = 0.003;
+    errors.elevation_error = errors.azimuth_error = 0.07 * kDegree;
+    return errors;
+  }
   errors.range_step = ouster ? 0.001 : 0.002;
   errors.time_jitter = ouster ? 0.0 : 3.8e-4;
   errors.beam_divergence = sensor == "hdl64" ? 0.002 : (sensor == "hdl32" ? 0.0028 : 0.003);

@@ -163,7 +163,8 @@ SweepSink sinkFor(const Arguments& arguments, const sim::Simulation& simulation)
     const auto writer = std::make_shared<sim::KittiSequenceWriter>(arguments.output, arguments.sequence);
     return [writer, &simulation](const sim::Sweep& sweep) { writer->write(simulation, sweep); };
   }
-  const auto format = arguments.format == Format::pcd ? sim::DatasetFormat::pcd : sim::DatasetFormat::kitti;
+  const auto pcd = simulation.sensor().isLivox() ? sim::DatasetFormat::livox : sim::DatasetFormat::pcd;
+  const auto format = arguments.format == Format::pcd ? pcd : sim::DatasetFormat::kitti;
   const auto writer = std::make_shared<sim::DatasetWriter>(arguments.output, format);
   return [writer](const sim::Sweep& sweep) { writer->write(sweep); };
 }
@@ -194,7 +195,7 @@ int main(int argc, char** argv)
 {
   constexpr int kFailure = 1;
   constexpr int kBadUsage = 2;
-  CLI::App app("Simulates a rotating lidar that moves through a world, and writes its sweeps and exact poses.",
+  CLI::App app("Simulates a lidar that moves through a world, and writes its sweeps and exact poses.",
                "pcl_floam_simulate");
   Arguments arguments;
   describeWorld(app, arguments.options);

@@ -101,7 +101,6 @@ struct Simulation::WorldModel {
 /// One column: all lasers at once.
 struct Simulation::Firing {
   int column;
-  double azimuth;   // rad
   double fraction;  // of the sweep, in [0, 1)
   double time;      // s after the sweep's start
   SE3 world_T_sensor;
@@ -112,8 +111,10 @@ Simulation::Simulation(const SimulationOptions& options) : options_(checked(opti
 {
   world_ = std::make_unique<WorldModel>(makeWorld(options_.world, worldOptions(options_)));
   lidar_ = lidar(options_.sensor.empty() ? world_->world.default_sensor : options_.sensor);
-  // The lasers fire at a fixed rate: a faster head has fewer columns.
-  lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
+  if (lidar_.pattern != ScanPattern::flash) {
+    // The lasers fire at a fixed rate: a faster head has fewer columns.
+    lidar_.columns = static_cast<int>(std::lround(lidar_.columns * 10.0 / options_.rate));
+  }
   GivenErrors given = options_.errors;
   if (options_.beam_divergence > 0.0) {
     given["beam-divergence"] = 1e3 * options_.beam_divergence;
@@ -174,12 +175,12 @@ bool Simulation::isBlind(double azimuth, double time) const
 void Simulation::fire(const Firing& firing, Random& random, Sweep& sweep) const
 {
   const double time = sweep.start_time + firing.time;
-  const bool blind = isBlind(firing.azimuth, time);
   const EchoModel model(lidar_, unit_.errors(), options_.weather);
   for (int ring = 0; ring < lidar_.rings(); ++ring) {
-    const double elevation = lidar_.elevations[static_cast<std::size_t>(ring)];
-    const Eigen::Vector3d told = directionOf(firing.azimuth, elevation);
-    const Eigen::Vector3d beam = unit_.beam(ring, firing.azimuth, elevation);
+    const auto [azimuth, elevation] = lidar_.direction(ring, firing.column, options_.start + time, options_.rotation);
+    const bool blind = isBlind(azimuth, time);
+    const Eigen::Vector3d told = directionOf(azimuth, elevation);
+    const Eigen::Vector3d beam = unit_.beam(ring, azimuth, elevation);
     const Pulse pulse{firing.world_T_sensor, beam, firing.fraction};
     const std::optional<Echo> echo = blind ? std::nullopt : model.echo(world_->scene, pulse, random);
     const bool seen = echo && !random.chance(options_.dropout);
@@ -223,12 +224,12 @@ Sweep Simulation::sweep(std::size_t number)
   Random random = randomOf(options_.family, options_.seed, sweepPurpose(options_, number));
   const SE3 end_T_world = sweep.world_T_end.inverse();
   for (int column = 0; column < lidar_.columns; ++column) {
-    const double fraction = static_cast<double>(column) / lidar_.columns;
+    // A flash is one instant, the middle of the sweep.
+    const double fraction = lidar_.pattern == ScanPattern::flash ? 0.5 : static_cast<double>(column) / lidar_.columns;
     // Where the sensor was when it really fired; what is told is the time when it should have.
     const double jitter = unit_.errors().time_jitter > 0.0 ? unit_.errors().time_jitter * random.normal() : 0.0;
     const SE3 pose = sensorPose(sweep.start_time + fraction * duration + jitter);
-    fire({column, lidar_.azimuth(column, options_.rotation), fraction, fraction * duration, pose, end_T_world * pose},
-         random, sweep);
+    fire({column, fraction, fraction * duration, pose, end_T_world * pose}, random, sweep);
   }
   sweep.cloud.height = options_.organized ? static_cast<std::uint32_t>(lidar_.rings()) : 1;
   sweep.cloud.width = static_cast<std::uint32_t>(sweep.cloud.points.size()) / sweep.cloud.height;

@@ -61,10 +61,11 @@ struct SimulationOptions {
   bool organized = false;       ///< clouds of rings x columns with NaN where there is no return
 };
 
-/// One turn of the head.
+/// One turn of the head, or what a lidar without one sees in as long.
 ///
 /// Points are in the sensor's frame *at their own time*, as a real sensor gives them: x forward, y left, z up, m. They
-/// come in firing order, column by column, and within a column by ring; an organised cloud has one row per ring.
+/// come in firing order, column by column, and within a column by ring; an organised cloud has one row per ring. Rings
+/// of lidars whose head does not turn are lasers, of a flash rows of pixels.
 struct Sweep {
   std::size_t number = 0;
   double start_time = 0.0;  ///< s; the sweep covers start_time to end_time

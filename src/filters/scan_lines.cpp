@@ -59,6 +59,31 @@ bool hasMeasurablePoint(const CloudView& cloud)
   return false;
 }
 
+/// Along a scan line the azimuth changes, not the elevation: a lidar whose head does not turn numbers its lasers, too,
+/// and a frame may be turned so that the rings stand upright in it.
+bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
+{
+  constexpr std::size_t kSampled = 31;  // one step in so many tells enough; odd, since drivers' habits are even
+  constexpr double kMostUpright = 0.25;  // of the steps: rings of a frame that is turned by 90 degrees have half
+  std::size_t upright = 0;
+  std::size_t steps = 0;
+  for (std::size_t m = 0; m < lines.lines(); ++m) {
+    for (std::size_t n = static_cast<std::size_t>(lines.begin[m]) + 1; n < static_cast<std::size_t>(lines.begin[m + 1]);
+         n += kSampled) {
+      const auto a = static_cast<std::size_t>(lines.index[n - 1]);
+      const auto b = static_cast<std::size_t>(lines.index[n]);
+      const double distance_a = std::hypot(cloud.x(a), cloud.y(a));
+      const double distance_b = std::hypot(cloud.x(b), cloud.y(b));
+      const double aside = static_cast<double>(cloud.x(a)) * cloud.y(b) - static_cast<double>(cloud.y(a)) * cloud.x(b);
+      const double upwards = distance_a * cloud.z(b) - distance_b * cloud.z(a);
+      // Both are products of distances and the tangent of an angle: of the azimuth's step, and of the elevation's.
+      upright += std::abs(upwards) > std::abs(aside) ? 1U : 0U;
+      ++steps;
+    }
+  }
+  return static_cast<double>(upright) <= kMostUpright * static_cast<double>(steps);
+}
+
 }  // namespace
 
 void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
@@ -81,7 +106,8 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     if (source != ScanLineSource::automatic && source != finder.source) {
       continue;
     }
-    if (finder.find(cloud, sensor, std::max(threads, 1), lines)) {
+    if (finder.find(cloud, sensor, std::max(threads, 1), lines) &&
+        (source != ScanLineSource::automatic || runAlongTheAzimuth(cloud, lines))) {
       lines.source = finder.source;
       return;
     }

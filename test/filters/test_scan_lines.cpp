@@ -129,6 +129,24 @@ TEST(ScanLines, FromARingFieldOfAShuffledCloud)
   }
 }
 
+/// As in a vehicle's frame, and in one where the rings stand upright: there they are no lines that run around.
+TEST(ScanLines, OfATurnedFrameOnlyIfTheyRunAround)
+{
+  for (const double degrees : {0.0, 20.0, 90.0, -90.0, 180.0}) {
+    std::vector<Return> returns = firingOrder();
+    for (Return& r : returns) {
+      r.point = expSO3({degrees * kPi / 180.0, 0.0, 0.0}) * r.point;
+    }
+    const auto cloud = toCloud(returns);
+    const ScanLines lines = find(viewOf(cloud));
+    EXPECT_EQ(lines.valid(), std::abs(degrees) != 90.0) << degrees;
+    EXPECT_EQ(lines.source, lines.valid() ? ScanLineSource::ring_field : ScanLineSource::automatic) << degrees;
+    ScanLines asked;
+    findScanLines(viewOf(cloud), SensorModel(), ScanLineSource::ring_field, asked);
+    EXPECT_TRUE(asked.valid()) << "who asks for the field, gets it: " << degrees;
+  }
+}
+
 TEST(ScanLines, FromRingFieldsOfOtherNamesAndTypes)
 {
   const auto returns = firingOrder();

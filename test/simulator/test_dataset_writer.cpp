@@ -3,6 +3,7 @@
 #include "dataset_writer.h"
 #include "support/temporary_folder.h"
 
+#include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <pcl/io/pcd_io.h>
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -73,6 +75,32 @@ TEST(DatasetWriter, PcdHoldsTheSweep)
     ASSERT_EQ(read[i].time, sweep.cloud[i].time);
     ASSERT_EQ(read[i].intensity, sweep.cloud[i].intensity);
   }
+}
+
+TEST(DatasetWriter, LivoxFieldsAreItsDrivers)
+{
+  const test::TemporaryFolder folder;
+  SimulationOptions options = smallOptions();
+  options.sensor = "avia";
+  Simulation simulation(options);
+  ASSERT_TRUE(simulation.sensor().isLivox());
+  const Sweep sweep = simulation.sweep(2);
+  DatasetWriter(folder.path(), DatasetFormat::livox).write(sweep);
+  pcl::PCLPointCloud2 read;
+  ScanSource(folder.path() / "scans").read(0, read);
+  ASSERT_EQ(read.width * read.height, sweep.cloud.size());
+  const CloudView view = viewOf(read);
+  ASSERT_TRUE(view.ring.exists());
+  ASSERT_TRUE(view.time.exists());
+  const std::size_t last = sweep.cloud.size() - 1;
+  EXPECT_EQ(view.x(last), sweep.cloud[last].x);
+  EXPECT_EQ(view.z(last), sweep.cloud[last].z);
+  const std::uint8_t* point = &read.data[last * read.point_step];
+  double stamp = 0.0;
+  std::memcpy(&stamp, point + 18, sizeof(stamp));
+  EXPECT_EQ(read.point_step, 26U);
+  EXPECT_EQ(point[17], sweep.cloud[last].ring);
+  EXPECT_NEAR(stamp, 1e9 * (sweep.start_time + static_cast<double>(sweep.cloud[last].time)), 1.0);
 }
 
 TEST(DatasetWriter, SweepsWithoutAReturnAreEmptyScans)
