@@ -63,7 +63,7 @@ bool hasMeasurablePoint(const CloudView& cloud)
 /// and a frame may be turned so that the rings stand upright in it.
 bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 {
-  constexpr std::size_t kSampled = 31;  // one step in so many tells enough; odd, since drivers' habits are even
+  constexpr std::size_t kSampled = 31;   // one step in so many tells enough; odd, since drivers' habits are even
   constexpr double kMostUpright = 0.25;  // of the steps: rings of a frame that is turned by 90 degrees have half
   std::size_t upright = 0;
   std::size_t steps = 0;
