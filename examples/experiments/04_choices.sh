@@ -49,7 +49,7 @@ choices += [(f"compensation: {mode}", ["--compensation", mode]) for mode in comp
 TIMED = ["defaults", "search: FLANN KD-tree", "every scan a keyframe", "solver: Ceres"]
 runs = {}
 for timed in (True, False):
-    chosen = [(label, arguments) for label, arguments in choices if (label in TIMED) == timed]
+    chosen = [(label, ["--engine", "features"] + arguments) for label, arguments in choices if (label in TIMED) == timed]
     all_runs = execute(options, [Run(d, label, arguments) for label, arguments in chosen for d in data], timed=timed)
     for i, (label, _) in enumerate(chosen):
         runs[label] = all_runs[i * len(data):(i + 1) * len(data)]

@@ -139,15 +139,29 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
             "format of the picture of path, height and error");
 }
 
+constexpr const char* kPoseEstimation = "Pose estimation (but for --planar, of --engine features)";
+constexpr const char* kCorrespondences = "Correspondences (of --engine features)";
+
+/// What would have no effect is a mistake.
+void refuseWithoutFeatures(const CLI::App& app, const OdometryOptions& o)
+{
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string& group = option->get_group();
+    const bool of_features = group == kPoseEstimation || group == kCorrespondences;
+    if (o.parameters.engine != OdometryEngine::features && of_features && option->count() > 0 &&
+        !option->check_lname("planar")) {
+      throw CLI::ValidationError(option->get_name(), "has an effect with --engine features only");
+    }
+  }
+}
+
 void addCompensationOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Motion compensation");
   addChoice(app, "--engine", o.parameters.engine,
-            {{"auto", OdometryEngine::automatic},
-             {"features", OdometryEngine::features},
-             {"surfaces", OdometryEngine::surfaces}},
+            {{"surfaces", OdometryEngine::surfaces}, {"features", OdometryEngine::features}},
             "what scans are registered by; surfaces hold on open roads\n"
-            "and need no scan lines: auto takes them where none are found");
+            "and need no scan lines; features are the paper's pipeline");
   addChoice(app, "--compensation", o.parameters.compensation,
             {{"continuous", CompensationMode::continuous},
              {"two-stage", CompensationMode::two_stage},
@@ -177,7 +191,7 @@ void addFeatureOptions(CLI::App& app, FeatureParameters& p)
 
 void addSolverOptions(CLI::App& app, RegistrationParameters& p)
 {
-  app.option_defaults()->group("Pose estimation");
+  app.option_defaults()->group(kPoseEstimation);
   addChoice(app, "--solver", p.solver, {{"gauss-newton", SolverKind::gauss_newton}, {"ceres", SolverKind::ceres}},
             "least-squares solver");
   addChoice(
@@ -207,7 +221,7 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
 
 void addCorrespondenceOptions(CLI::App& app, RegistrationParameters& p)
 {
-  app.option_defaults()->group("Correspondences");
+  app.option_defaults()->group(kCorrespondences);
   addNumber(app, "--edge-neighbors", p.edge_neighbors, "N", "map points a line is fitted to");
   addNumber(app, "--plane-neighbors", p.plane_neighbors, "N", "map points a plane is fitted to");
   addNumber(app, "--max-neighbor-distance", p.max_neighbor_distance, "M", "those points are no farther than this");
@@ -259,6 +273,7 @@ void addOptions(CLI::App& app, OdometryOptions& options)
   addCorrespondenceOptions(app, options.parameters.registration);
   addMapOptions(app, options.parameters);
   addRunOptions(app, options);
+  app.parse_complete_callback([&app, &options] { refuseWithoutFeatures(app, options); });
 }
 
 OdometryParameters parametersFor(const OdometryOptions& options, ScanFormat format)

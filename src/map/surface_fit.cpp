@@ -16,8 +16,8 @@ constexpr double kFlat = 0.05;
 /// Points of one laser lie on its cone, of two on a plane if there is one; any two lasers' points make a line.
 constexpr int kLasersOfPlane = 2;
 constexpr int kLasersOfLine = 3;
-/// The variance of what fills a cell evenly is its squared side over 12; a quarter more, as few points vary by chance.
-constexpr double kEven = 15.0;
+/// The variance of what fills a cell evenly is its squared side over 12.
+constexpr double kEven = 12.0;
 
 }  // namespace
 
@@ -53,16 +53,22 @@ std::array<float, 3> single(const Eigen::Vector3d& v)
 
 CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
 {
+  CellFit fit;
+  if (sums.count == 0) {
+    return fit;
+  }
+  const Eigen::Vector3d mean = Eigen::Vector3d(sums.sum[0], sums.sum[1], sums.sum[2]) / sums.count;
+  const Eigen::Matrix3d covariance = covarianceOf(sums, mean);
+  const Eigen::Matrix3f filled = (kEven / (side * side) * covariance).cast<float>();
+  fit.filled = {filled(0, 0), filled(0, 1), filled(0, 2), filled(1, 1), filled(1, 2), filled(2, 2)};
   const int lasers = sums.support.lasers();
   const bool edges = shapes == SurfaceShapes::lines;
   if (sums.count < (edges ? kLeastEdges : kLeastCount) || lasers < kLasersOfPlane) {
-    return {};
+    return fit;
   }
-  const Eigen::Vector3d mean = Eigen::Vector3d(sums.sum[0], sums.sum[1], sums.sum[2]) / sums.count;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.computeDirect(covarianceOf(sums, mean));
+  eigen.computeDirect(covariance);
   const Eigen::Vector3d variance = eigen.eigenvalues().cwiseMax(0.0);  // rising
-  CellFit fit;
   fit.mean = single(mean);
   if (variance[1] < kFlat * variance[2]) {
     fit.kind = lasers < kLasersOfLine ? SurfaceKind::unknown : SurfaceKind::line;
@@ -78,9 +84,7 @@ CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
     fit.extent = static_cast<float>(variance[1]);
   } else {
     fit.kind = SurfaceKind::point;
-    const Eigen::Vector3d felt = (1.0 - variance.array() * (kEven / (side * side))).max(0.0);
-    Eigen::Map<Eigen::Matrix3f>(fit.felt.data()) =
-        (eigen.eigenvectors() * felt.asDiagonal() * eigen.eigenvectors().transpose()).cast<float>();
+    Eigen::Map<Eigen::Matrix3f>(fit.axes.data()) = eigen.eigenvectors().cast<float>();
   }
   return fit;
 }

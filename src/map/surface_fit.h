@@ -35,7 +35,8 @@ struct CellFit {
   SurfaceKind kind = SurfaceKind::unknown;
   std::array<float, 3> mean{};
   std::array<float, 3> direction{};
-  std::array<float, 9> felt{1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F};
+  std::array<float, 9> axes{};    ///< of a point's cell: its principal directions, one after the other
+  std::array<float, 6> filled{};  ///< xx xy xz yy yz zz: covariance over that of points that fill the cell evenly
   float thickness = 0.0F;
   float extent = 0.0F;
 };

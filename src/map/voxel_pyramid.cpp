@@ -159,9 +159,30 @@ Surface VoxelPyramid::surfaceIn(const Path& path, int level, const Place& place,
     findNearest(path.cell[at], level, path.center[at], place.offset, nearest);
     surface.center = centerOf(place.key) + nearest.place;
     surface.thickness = squared_spacing_;
-    surface.felt = Eigen::Map<const Eigen::Matrix3f>(fit.felt.data()).cast<double>();
+    surface.felt = feltIn(path, level, fit);
   }
   return surface;
+}
+
+/// Which displacements are felt among the points of a cell: what fills it evenly, or goes on in the next greater one as
+/// in this, tells nothing of the way along it.
+Eigen::Matrix3d VoxelPyramid::feltIn(const Path& path, int level, const CellFit& fit) const
+{
+  constexpr double kChance = 1.25;  // as few points vary by chance
+  const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix3f>(fit.axes.data()).cast<double>();
+  const auto along = [&](const CellFit& cell) {
+    const auto& f = cell.filled;
+    Eigen::Matrix3f filled;
+    filled << f[0], f[1], f[2], f[1], f[3], f[4], f[2], f[4], f[5];
+    return Eigen::Vector3d((axes.transpose() * filled.cast<double>() * axes).diagonal());
+  };
+  Eigen::Vector3d filled = along(fit);
+  if (level + 1 < kLevels) {
+    CellFit own;
+    filled = filled.cwiseMax(along(fitOf(cells_[path.cell[static_cast<std::size_t>(level) + 1]], level + 1, own)));
+  }
+  const Eigen::Vector3d felt = (1.0 - kChance * filled.array()).max(0.0);
+  return axes * felt.asDiagonal() * axes.transpose();
 }
 
 /// Nearest cells first; those that lie farther off than what was found are left out.

@@ -91,6 +91,7 @@ private:
   const CellFit& fitOf(const Cell& cell, int level, CellFit& own) const;
   [[nodiscard]] bool isSupported(const Cell& cell, std::uint32_t laser) const;
   [[nodiscard]] Surface surfaceIn(const Path& path, int level, const Place& place, const CellFit& fit) const;
+  [[nodiscard]] Eigen::Matrix3d feltIn(const Path& path, int level, const CellFit& fit) const;
   void findNearest(std::uint32_t cell, int level, const Eigen::Vector3d& center, const Eigen::Vector3d& offset,
                    Nearest& nearest) const;
   static void findNearest(const Leaf& leaf, const Eigen::Vector3d& offset, Nearest& nearest);

@@ -2,6 +2,9 @@
 
 #include <Eigen/Cholesky>
 
+#include <algorithm>
+#include <cmath>
+
 namespace pcl_floam {
 
 namespace {
@@ -13,9 +16,15 @@ using Block6 = Eigen::Matrix<double, 6, 6>;
 constexpr double kFirstTranslation = 0.3;
 constexpr double kFirstRotation = 0.15;
 /// By how much a prediction over one period is off, m and rad, per coordinate: 2 m/s^2 and 60 degrees/s^2 at ten
-/// sweeps a second.
+/// sweeps a second. What a car's acceleration may be is not learned: on an open road it is hardly seen, and nobody must
+/// come to believe that there is none.
 constexpr double kTranslation = 0.02;
 constexpr double kRotation = 0.01;
+/// Of turns, which every scan tells well, late predictions say more: they are off by so many times as much as the late
+/// ones in the mean, and at least by what a pose is.
+constexpr double kTimesLate = 4.0;  // squared
+constexpr double kMemory = 10.0;    // predictions
+constexpr double kLeastRotation = 0.0005;
 /// With exact poses the variance of a prediction over one period is so many times the density: 1/3 of it for the
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
 constexpr double kPerDensity = 0.62;
@@ -38,10 +47,20 @@ Block6 turned(const Eigen::Matrix3d& rotation)
   return r;
 }
 
+using Square12 = Eigen::Matrix<double, 12, 12>;
+
+Square12 turnedBoth(const Eigen::Matrix3d& rotation)
+{
+  Square12 r = Square12::Zero();
+  r.topLeftCorner<6, 6>() = turned(rotation);
+  r.bottomRightCorner<6, 6>() = turned(rotation);
+  return r;
+}
+
 }  // namespace
 
 MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity)
-    : pose_(world_T_sensor), velocity_(velocity)
+    : pose_(world_T_sensor), velocity_(velocity), turn_error_(kRotation * kRotation)
 {
   for (int i = 0; i < 6; ++i) {
     const double first = i < 3 ? kFirstTranslation : kFirstRotation;
@@ -64,7 +83,27 @@ void MotionEstimate::place(const SE3& world_T_sensor, const Matrix6& covariance)
   covariance_.bottomLeftCorner<6, 6>().setZero();
 }
 
+void MotionEstimate::forgetAlong(const Eigen::Vector3d& direction, double periods)
+{
+  const Eigen::Vector3d d = kFirstTranslation * (pose_.rotation.transpose() * direction);
+  const Eigen::Matrix3d variance = d * d.transpose();
+  covariance_.block<3, 3>(0, 0) += periods * periods * variance;
+  covariance_.block<3, 3>(0, 6) += periods * variance;
+  covariance_.block<3, 3>(6, 0) += periods * variance;
+  covariance_.block<3, 3>(6, 6) += variance;
+}
+
 void MotionEstimate::predict(double periods)
+{
+  constexpr double kMostSteps = 16.0;
+  const double steps = std::clamp(std::ceil(periods), 1.0, kMostSteps);  // noise turns with the sensor on the way
+  for (int i = 0; i < static_cast<int>(steps); ++i) {
+    advance(periods / steps);
+  }
+  periods_ = periods;
+}
+
+void MotionEstimate::advance(double periods)
 {
   const SE3 step = exp(periods * velocity_);
   pose_ = pose_ * step;
@@ -75,8 +114,7 @@ void MotionEstimate::predict(double periods)
   const Eigen::Matrix<double, 12, 12> before = covariance_;
   covariance_ = f * before * f.transpose();
   for (int i = 0; i < 6; ++i) {
-    const double error = i < 3 ? kTranslation : kRotation;
-    const double q = error * error / kPerDensity;
+    const double q = (i < 3 ? kTranslation * kTranslation : turn_error_) / kPerDensity;
     covariance_(i, i) += q * periods * periods * periods / 3.0;
     covariance_(i, 6 + i) += q * periods * periods / 2.0;
     covariance_(6 + i, i) += q * periods * periods / 2.0;
@@ -84,35 +122,49 @@ void MotionEstimate::predict(double periods)
   }
 }
 
-/// The regression of the velocity's error on the pose's.
-Matrix6 MotionEstimate::velocityPerPose() const
+MotionEstimate::Matrix12 MotionEstimate::covariance() const
 {
-  const Eigen::Matrix<double, 12, 12> p = covariance_;
-  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise_;
-  return innovation.ldlt().solve(Block6(p.topRightCorner<6, 6>())).transpose();
+  const Square12 r = turnedBoth(pose_.rotation);
+  return r * covariance_ * r.transpose();
 }
 
-void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance, const Matrix6& noise)
+void MotionEstimate::learnFrom(const SE3& world_T_sensor)
 {
+  if (periods_ > 0.0) {
+    const double error = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation).squaredNorm() / 3.0;
+    turn_error_ += (kTimesLate * error / (periods_ * periods_) - turn_error_) / kMemory;
+    turn_error_ = std::max(turn_error_, kLeastRotation * kLeastRotation);
+  }
+  periods_ = 0.0;
+}
+
+/// Kalman's filter.
+void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance)
+{
+  learnFrom(world_T_sensor);
   Vector6 error;
   error.head<3>() = pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation);
   error.tail<3>() = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
   const Block6 r = turned(pose_.rotation).transpose();
-  const Block6 posterior = r * covariance * r.transpose();
-  noise_ = r * noise * r.transpose();
-  const Eigen::Matrix<double, 12, 12> p = covariance_;
-  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise_;
-  const Block6 gain = velocityPerPose();
-  velocity_ += gain * error;
-  Eigen::Matrix<double, 12, 12> after;
-  after.topLeftCorner<6, 6>() = posterior;
-  after.bottomLeftCorner<6, 6>() = gain * posterior;
-  after.topRightCorner<6, 6>() = posterior * gain.transpose();
-  after.bottomRightCorner<6, 6>() =
-      Block6(p.bottomRightCorner<6, 6>()) - gain * (innovation - posterior) * gain.transpose();
-  covariance_ = after;
+  const Square12 p = covariance_;
+  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + r * covariance * r.transpose();
+  const Eigen::Matrix<double, 12, 6> gain =
+      innovation.ldlt().solve(Eigen::Matrix<double, 6, 12>(p.topRows<6>())).transpose();
+  const Eigen::Matrix<double, 12, 1> change = gain * error;
+  pose_ = SE3(nearestRotation(pose_.rotation * expSO3(change.segment<3>(3))),
+              pose_.translation + pose_.rotation * Eigen::Vector3d(change.head<3>()));
+  velocity_ += change.tail<6>();
+  covariance_ = p - gain * innovation * gain.transpose();
+}
+
+void MotionEstimate::update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance)
+{
+  learnFrom(world_T_sensor);
   pose_ = world_T_sensor;
   pose_.rotation = nearestRotation(pose_.rotation);
+  velocity_ = velocity;
+  const Square12 r = turnedBoth(pose_.rotation).transpose();
+  covariance_ = r * covariance * r.transpose();
 }
 
 }  // namespace pcl_floam

@@ -22,28 +22,37 @@ public:
   /// Of the pose, as a perturbation on the left about the sensor's position, in the world's axes.
   [[nodiscard]] Matrix6 poseCovariance() const;
 
-  /// By how much the velocity changes with what the pose turns out to be, 1 / period: after a prediction it is also the
-  /// best guess of the motion during the sweep.
-  [[nodiscard]] Matrix6 velocityPerPose() const;
+  /// Of pose and velocity, both about the sensor's position in the world's axes.
+  [[nodiscard]] Matrix12 covariance() const;
 
   /// The sensor is elsewhere than was thought; how it moves in its own axes stays as it is known.
   /// \param covariance as \ref poseCovariance
   void place(const SE3& world_T_sensor, const Matrix6& covariance);
 
+  /// The velocity along a direction of the world's axes is no better known than at first, and was not for so many
+  /// periods.
+  void forgetAlong(const Eigen::Vector3d& direction, double periods);
+
   /// Goes on by so many periods.
   void predict(double periods);
 
-  /// Takes in what a registration made of the predicted pose: the posterior, prior included.
-  /// \param covariance as \ref poseCovariance
-  /// \param noise      likewise: by how much the pose is off from scan to scan beyond that; the velocity follows it
-  /// less
-  void correct(const SE3& world_T_sensor, const Matrix6& covariance, const Matrix6& noise = Matrix6::Zero());
+  /// Takes in a measured pose.
+  /// \param covariance of its errors, as \ref poseCovariance
+  void correct(const SE3& world_T_sensor, const Matrix6& covariance);
+
+  /// Takes what a registration made of the prediction.
+  /// \param covariance as \ref covariance
+  void update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance);
 
 private:
+  void advance(double periods);
+  void learnFrom(const SE3& world_T_sensor);
+
   SE3 pose_;
   Vector6 velocity_ = Vector6::Zero();
   Matrix12 covariance_ = Matrix12::Zero();
-  Matrix6 noise_ = Matrix6::Zero();  ///< of the last correction, in the sensor's axes
+  double periods_ = 0.0;  ///< of the last prediction
+  double turn_error_;     ///< rad^2 per coordinate, squared error of a prediction over one period: the mean of late
 };
 
 }  // namespace pcl_floam

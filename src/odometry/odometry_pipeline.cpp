@@ -24,7 +24,6 @@ const char* toString(TrackingState state)
 const char* toString(OdometryEngine engine)
 {
   switch (engine) {
-    case OdometryEngine::automatic: return "auto";
     case OdometryEngine::features: return "features";
     case OdometryEngine::surfaces: return "surfaces";
   }
@@ -62,14 +61,6 @@ struct OdometryPipeline::Impl {
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
     visit([&](auto& odometry) { odometry.track(scan, stamp); });
-    if (isUndecided()) {
-      FeatureOdometry& features = std::get<FeatureOdometry>(engine);
-      is_decided = features.lines.valid();
-      if (features.lines.failure == ScanLineFailure::no_line_structure) {
-        takeSurfaces(features);
-        visit([&](auto& odometry) { odometry.track(scan, stamp); });
-      }
-    }
     return noteEngine();
   }
 
@@ -80,34 +71,15 @@ struct OdometryPipeline::Impl {
   }
 
 private:
-  [[nodiscard]] bool isUndecided()
-  {
-    return !is_decided && visit([](auto& odometry) { return odometry.parameters.engine; }) == OdometryEngine::automatic;
-  }
-
-  /// From before the first scan on; what was given to begin with stays.
-  void takeSurfaces(FeatureOdometry& features)
-  {
-    SurfaceOdometry surfaces(features.parameters);
-    surfaces.initial_pose = features.initial_pose;
-    if (features.prior_map) {
-      surfaces.localizeIn(std::move(features.map), *features.prior_map);
-    }
-    engine = std::move(surfaces);
-    is_decided = true;
-  }
-
   const OdometryReport& noteEngine()
   {
     OdometryReport& report = visit([](auto& odometry) -> OdometryReport& { return odometry.report; });
     report.engine =
         std::holds_alternative<SurfaceOdometry>(engine) ? OdometryEngine::surfaces : OdometryEngine::features;
-    report.engine = isUndecided() ? OdometryEngine::automatic : report.engine;
     return report;
   }
 
   Engine engine;
-  bool is_decided = false;  // where that is automatic
 };
 
 OdometryPipeline::OdometryPipeline(const OdometryParameters& parameters)

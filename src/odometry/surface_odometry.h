@@ -168,7 +168,8 @@ struct SurfaceOdometry {
   void insertFeatures(const FeatureSet& features, const SweepPose& world_T_sensor)
   {
     FeatureSet undistorted;
-    compensate(features, SweepMotion(world_T_sensor.twist, 0.5), undistorted, parameters.threads);
+    compensate(features, SweepMotion(world_T_sensor.twist, 0.5, world_T_sensor.acceleration), undistorted,
+               parameters.threads);
     map.insert(undistorted, world_T_sensor.middle, parameters.threads);
     world_T_keyframe = world_T_sensor.middle;
     ++keyframes;
@@ -181,9 +182,10 @@ struct SurfaceOdometry {
   {
     constexpr int kKeyframesBetween = 7;
     if (map.parameters().see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
-      map.forgetSeenThrough(undistortedSample(cloud, scan.lines, scan.timing, parameters.features,
-                                              parameters.vertical_correction, SweepMotion(pose.twist, 0.5)),
-                            pose.middle, parameters.threads);
+      map.forgetSeenThrough(
+          undistortedSample(cloud, scan.lines, scan.timing, parameters.features, parameters.vertical_correction,
+                            SweepMotion(pose.twist, 0.5, pose.acceleration)),
+          pose.middle, parameters.threads);
     }
   }
 
@@ -206,7 +208,7 @@ struct SurfaceOdometry {
   {
     report.state = state;
     report.world_T_sensor = initial_pose;
-    report.provisional = tracker.isOpen();
+    report.provisional = tracker.isAmbiguous();
     if (tracker.isTracking()) {
       report.world_T_sensor = world_T_track * poseNow().at(fractionOf(parameters.pose_instant));
       turnIntoWorld(report, world_T_track);
@@ -225,7 +227,10 @@ struct SurfaceOdometry {
     return report;
   }
 
-  [[nodiscard]] SweepPose inWorld(const SweepPose& pose) const { return {world_T_track * pose.middle, pose.twist}; }
+  [[nodiscard]] SweepPose inWorld(const SweepPose& pose) const
+  {
+    return {world_T_track * pose.middle, pose.twist, pose.acceleration};
+  }
 
   [[nodiscard]] SweepPose poseNow() const
   {

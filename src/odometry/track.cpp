@@ -26,6 +26,28 @@ Matrix6 covarianceOf(double translation, double rotation)
   return variance.asDiagonal();
 }
 
+/// Distortion Compensation, first stage (Eq. 3 and 4).
+SweepPlacement placementOf(CompensationMode mode)
+{
+  switch (mode) {
+    case CompensationMode::continuous: return SweepPlacement::joint;
+    case CompensationMode::iterative: return SweepPlacement::follows;
+    default: return SweepPlacement::held;
+  }
+}
+
+/// Of a pose that a single motion has led to, for so many periods: one that is not known at all.
+Matrix12 oneMotion(double periods)
+{
+  constexpr double kRest = 1e-6;  // by how much it may be another at the end
+  Eigen::Matrix<double, 12, 12> covariance = Eigen::Matrix<double, 12, 12>::Identity();
+  covariance.topLeftCorner<6, 6>() *= periods * periods;
+  covariance.topRightCorner<6, 6>().diagonal().setConstant(periods);
+  covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
+  covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
+  return covariance;
+}
+
 void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
 {
   map.beginKeyframe();
@@ -43,7 +65,7 @@ TrackMap::TrackMap(double side, const TrackSettings& settings)
 
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
-  const MovingSensor sensor(pose.middle, pose.twist);
+  const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
   insertInto(space, sweep.dense, sensor);
   insertInto(edges, sweep.edges, sensor);
   space.crop(pose.middle.translation, horizon);
@@ -60,26 +82,21 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
     const Vector6 motion = log(first_T_second) / second.periods;
     map_.emplace(side_, settings_);
     map_->insert(first, {SE3(), first.fraction * motion});
+    motion_ = MotionEstimate(SE3(), motion);
+    motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
-    problem.guess = first_T_second;
-    problem.guess_covariance =
-        covarianceOf(far / (kLook * std::sqrt(3.0)), kTurnPerMetre * far / (kLook * std::sqrt(3.0)));
-    problem.guess_is_prior = false;
-    problem.sweep.twist = second.fraction * motion;
-    problem.sweep.gain = second.fraction / second.periods * Matrix6(Matrix6::Identity());
-    problem.wants_evidence = round + 1 == rounds;
+    problem.reach = covarianceOf(far / (kLook * std::sqrt(3.0)), kTurnPerMetre * far / (kLook * std::sqrt(3.0)));
+    problem.prior.pose_counts = false;
+    problem.prior.covariance = oneMotion(second.periods);
+    problem.wants_evidence = problem.looks_for_weak = round + 1 == rounds;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;
     }
     first_T_second = found.report.target_T_source;
   }
-  const Vector6 motion = log(first_T_second) / second.periods;
   map_.emplace(side_, settings_);
-  map_->insert(first, {SE3(), first.fraction * motion});
-  motion_ = MotionEstimate(SE3(), motion);
-  motion_.predict(second.periods);
-  found.report.sweep_twist = second.fraction * motion;
+  map_->insert(first, {SE3(), first.fraction / second.periods * log(first_T_second)});
   evidence_ = found.evidence / kResidualsPerIndependentOne;
   update(second, found);
   return found;
@@ -99,7 +116,7 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
       motion_.place(poses[i], covarianceOf(kKnown, kKnown));
     } else {
       motion_.predict(sweeps[i].periods);
-      motion_.correct(poses[i], covarianceOf(kKnown, kKnown), covarianceOf(kKnown, kKnown));
+      motion_.correct(poses[i], covarianceOf(kKnown, kKnown));
     }
     if (i == 0 || isKeyframe()) {
       map_->insert(sweeps[i], pose_);
@@ -122,8 +139,11 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   for (int round = 0; round < kRounds; ++round, part *= 0.5) {
     found = registerFrom(sweep, found.report.target_T_source, part * kFar, part * kTurned);
   }
-  motion_ = MotionEstimate(guess);
-  motion_.place(guess, covarianceOf(kFar, kTurned));
+  motion_ = MotionEstimate(found.report.target_T_source);
+  if (found.report.hasConverged()) {
+    motion_.place(found.report.target_T_source, covarianceOf(part * kFar, part * kTurned));
+    found = registerSurfaces(problemFor(sweep));
+  }
   if (found.report.hasConverged()) {
     update(sweep, found);
   }
@@ -151,7 +171,10 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 /// Motion Estimation (Eq. 2).
 void Track::predict(const Sweep& sweep)
 {
-  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
+  constexpr double kLong = 3.5;   // periods: a car's motion is known for longer, a hand's is not
+  constexpr double kShort = 0.5;  // over less, a difference of velocities is no acceleration
+  velocity_before_ = motion_.velocity();
+  periods_between_ = sweep.periods > kLong || sweep.periods < kShort ? 0.0 : sweep.periods;
   motion_.predict(sweep.periods);
   if (sweep.periods > kLong) {
     seekAllAround(sweep);
@@ -164,6 +187,8 @@ void Track::seekAllAround(const Sweep& sweep)
   constexpr int kTurns = 18;
   constexpr int kUntilKnown = 3;   // sweeps until the velocity is known again
   constexpr double kReach = 1.0;   // m
+  constexpr int kRounds = 3;       // to come to rest where it was found
+  constexpr double kNearer = 0.3;  // of the reach
   constexpr double kTurned = 0.4;  // rad
   SurfaceProblem as_predicted = problemFor(sweep);
   as_predicted.wants_evidence = true;
@@ -181,19 +206,34 @@ void Track::seekAllAround(const Sweep& sweep)
     }
   }
   if (is_elsewhere && best.report.hasConverged()) {
+    for (int round = 0; round < kRounds; ++round) {
+      const SurfaceRegistration nearer =
+          registerFrom(sweep, best.report.target_T_source, kNearer * kReach, kNearer * kTurned);
+      best = nearer.report.hasConverged() ? nearer : best;
+    }
     motion_ = MotionEstimate();  // the velocity of that long ago tells nothing
+    periods_between_ = 0.0;
     sweeps_to_wait_ = kUntilKnown;
     motion_.place(best.report.target_T_source, covarianceOf(0.1 * kReach, 0.1 * kTurned));
+  }
+}
+
+void Track::forgetAlong(const std::vector<WeakDirection>& directions, double periods)
+{
+  for (const WeakDirection& weak : directions) {
+    motion_.forgetAlong(weak.direction.head<3>(), periods);
   }
 }
 
 SurfaceRegistration Track::registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const
 {
   SurfaceProblem problem = problemFor(sweep);
-  problem.guess = guess;
-  problem.guess_covariance = covarianceOf(far / (kLook * std::sqrt(3.0)), far_turn / (kLook * std::sqrt(3.0)));
-  problem.guess_is_prior = false;
-  problem.sweep = {};
+  problem.prior.pose = guess;
+  problem.prior.velocity.setZero();
+  problem.prior.covariance = MotionEstimate(guess).covariance();
+  problem.prior.periods_between = 0.0;
+  problem.prior.pose_counts = false;
+  problem.reach = covarianceOf(far / (kLook * std::sqrt(3.0)), far_turn / (kLook * std::sqrt(3.0)));
   problem.wants_evidence = true;
   return registerSurfaces(problem);
 }
@@ -203,27 +243,17 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   SurfaceProblem problem;
   problem.scan = {&sweep.sample, &map_->space};
   problem.edges = {&sweep.edges, &map_->edges};
-  problem.guess = motion_.pose();
-  problem.guess_covariance = motion_.poseCovariance();
-  problem.sweep = sweepDependence(sweep);
+  problem.prior.pose = motion_.pose();
+  problem.prior.velocity = motion_.velocity();
+  problem.prior.velocity_before = velocity_before_;
+  problem.prior.periods_between = periods_between_;
+  problem.prior.covariance = motion_.covariance();
+  problem.prior.fraction = sweep.fraction;
+  problem.reach = motion_.poseCovariance();
+  problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
   problem.threads = settings_.threads;
   return problem;
-}
-
-/// Distortion Compensation, first stage (Eq. 3 and 4): with the motion that was predicted; or with what the pose makes
-/// of it.
-SweepDependence Track::sweepDependence(const Sweep& sweep) const
-{
-  SweepDependence dependence;
-  dependence.twist = sweep.fraction * motion_.velocity();
-  if (settings_.compensation == CompensationMode::iterative) {
-    dependence.twist = sweep.fraction / sweep.periods * log(pose_.middle.inverse() * motion_.pose());
-    dependence.gain = sweep.fraction / sweep.periods * Matrix6(Matrix6::Identity());
-  } else if (settings_.compensation == CompensationMode::continuous) {
-    dependence.gain = sweep.fraction * motion_.velocityPerPose();
-  }
-  return dependence;
 }
 
 /// What a hypothesis is worth: how it explains the sweep, and how little the sensor must have been pushed about.
@@ -232,8 +262,7 @@ void Track::judge(const SurfaceRegistration& registration)
   const SE3& found = registration.report.target_T_source;
   Eigen::Matrix<double, 6, 1> off;
   off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
-  const Eigen::Matrix<double, 6, 6> expected =
-      motion_.poseCovariance() + kResidualsPerIndependentOne * registration.posterior;
+  const Eigen::Matrix<double, 6, 6> expected = motion_.poseCovariance() + registration.report.covariance;
   evidence_ += registration.evidence / kResidualsPerIndependentOne - 0.5 * off.dot(expected.ldlt().solve(off));
 }
 
@@ -241,9 +270,8 @@ void Track::judge(const SurfaceRegistration& registration)
 void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
 {
   const SE3 last = pose_.middle;
-  const Matrix6 noise = kResidualsPerIndependentOne * registration.posterior;
-  motion_.correct(registration.report.target_T_source, registration.posterior, noise);
-  pose_ = {motion_.pose(), registration.report.sweep_twist};
+  motion_.update(registration.report.target_T_source, registration.velocity, registration.posterior);
+  pose_ = {motion_.pose(), registration.report.sweep_twist, registration.report.sweep_acceleration};
   if (settings_.compensation == CompensationMode::two_stage) {
     pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
   }

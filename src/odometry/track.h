@@ -23,11 +23,16 @@ struct TrackSettings {
 
 /// A sweep's place in the world.
 struct SweepPose {
-  SE3 middle;     ///< world_T_sensor at mid-sweep
-  Vector6 twist;  ///< motion during the sweep
+  SE3 middle;                              ///< world_T_sensor at mid-sweep
+  Vector6 twist;                           ///< motion during the sweep
+  Vector6 acceleration = Vector6::Zero();  ///< change of the twist over the sweep
 
   /// At another fraction of the sweep.
-  [[nodiscard]] SE3 at(double fraction) const { return middle * exp((fraction - 0.5) * twist); }
+  [[nodiscard]] SE3 at(double fraction) const
+  {
+    const double since = fraction - 0.5;
+    return middle * exp(since * twist + 0.5 * since * since * acceleration);
+  }
 };
 
 /// Space (all points) and edges (the paper's features), as pyramids of voxels.
@@ -63,6 +68,9 @@ public:
   /// \param is_judged whether \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, bool is_judged = false);
 
+  /// Nothing has told how the sensor moved along these directions, for so many periods.
+  void forgetAlong(const std::vector<WeakDirection>& directions, double periods);
+
   [[nodiscard]] const MotionEstimate& motion() const { return motion_; }
   [[nodiscard]] const SweepPose& pose() const { return pose_; }
   [[nodiscard]] double evidence() const { return evidence_; }
@@ -72,7 +80,6 @@ private:
   void predict(const Sweep& sweep);
   void seekAllAround(const Sweep& sweep);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
-  [[nodiscard]] SweepDependence sweepDependence(const Sweep& sweep) const;
   SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;
   void judge(const SurfaceRegistration& registration);
   void update(const Sweep& sweep, const SurfaceRegistration& registration);
@@ -84,6 +91,8 @@ private:
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   MotionEstimate motion_;
+  Vector6 velocity_before_ = Vector6::Zero();
+  double periods_between_ = 0.0;  ///< since that velocity; 0: none is known
   SweepPose pose_;
   SE3 keyframe_;
   double evidence_ = 0.0;

@@ -104,7 +104,7 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   for (const Eigen::Vector3d& point : prior.edges) {
     map.edges.insert(point, laser++);
   }
-  Hypothesis hypothesis{Track(settings_, side_), {}, false};
+  Hypothesis hypothesis{Track(settings_, side_), {}, {}, false};
   Outcome outcome;
   outcome.registration = hypothesis.track.begin(sweep, std::move(map), prior.guess, prior.keeps_map);
   if (outcome.registration.report.hasConverged()) {
@@ -119,7 +119,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
   constexpr double kNear = 0.5;      // m
   constexpr double kFar = 2.0;       // m
-  constexpr double kFarthest = 4.0;  // m: 40 m/s at ten sweeps a second
+  constexpr double kFarthest = 4.0;  // m a period: 40 m/s at ten sweeps a second
   constexpr int kNearRounds = 3;
   constexpr int kFarRounds = 6;
   Outcome outcome;
@@ -132,7 +132,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
     return outcome;
   }
   const Eigen::Vector3d open = leastKnown(outcome.registration.report.information);
-  for (int step = 1; step * kNear <= kFarthest; ++step) {
+  for (int step = 1; step * kNear <= kFarthest * sweep.periods; ++step) {
     for (const double sign : {1.0, -1.0}) {
       Vector6 velocity = Vector6::Zero();
       velocity.head<3>() = sign * step * kNear / sweep.periods * open;
@@ -151,7 +151,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds)
 {
   constexpr double kSame = 0.5;  // m
-  Hypothesis hypothesis{Track(settings_, side_), {}, false};
+  Hypothesis hypothesis{Track(settings_, side_), {}, {}, false};
   if (!hypothesis.track.begin(first_, sweep, velocity, far, rounds).report.hasConverged()) {
     return;
   }
@@ -176,6 +176,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     Hypothesis& hypothesis = hypotheses_[i];
     const SurfaceRegistration registration = hypothesis.track.step(sweep, true);
+    hypothesis.weak = registration.report.weak_directions;
     hypothesis.is_lost = !registration.report.hasConverged();
     if (hypothesis.is_lost) {
       outcome.registration = any ? outcome.registration : registration;
@@ -221,6 +222,9 @@ void Tracker::giveUpHopeless()
 /// The best hypothesis stays, its first sweeps where its last ones say they were.
 void Tracker::settle()
 {
+  if (!hypotheses_[best_].weak.empty()) {
+    best_ = leastMoved();
+  }
   Hypothesis found = std::move(hypotheses_[best_]);
   const std::vector<SE3> poses = posesFoundBackwards(found);
   if (!poses.empty()) {
@@ -232,11 +236,23 @@ void Tracker::settle()
       found.poses.push_back({poses[i], kept_[i].fraction * velocity});
     }
   }
+  found.track.forgetAlong(found.weak, static_cast<double>(kept_.size()));
   hypotheses_.clear();
   hypotheses_.push_back(std::move(found));
   best_ = 0;
   is_open_ = false;
   kept_.clear();
+}
+
+/// Where a motion leaves no trace, none is as good as any.
+std::size_t Tracker::leastMoved() const
+{
+  const auto moved = [](const Hypothesis& h) {
+    return h.is_lost ? HUGE_VAL : h.track.pose().middle.translation.norm();
+  };
+  const auto least = std::min_element(hypotheses_.begin(), hypotheses_.end(),
+                                      [&](const Hypothesis& a, const Hypothesis& b) { return moved(a) < moved(b); });
+  return static_cast<std::size_t>(least - hypotheses_.begin());
 }
 
 /// Nothing if a sweep cannot be registered.

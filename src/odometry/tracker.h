@@ -35,6 +35,8 @@ public:
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether the first poses may yet be corrected.
   [[nodiscard]] bool isOpen() const { return is_open_; }
+  /// Whether several motions are followed.
+  [[nodiscard]] bool isAmbiguous() const { return hypotheses_.size() > 1; }
   [[nodiscard]] const Track& track() const { return hypotheses_[best_].track; }
   /// Of the sweeps since the first one, while \ref isOpen and right after.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_[best_].poses; }
@@ -43,6 +45,7 @@ private:
   struct Hypothesis {
     Track track;
     std::vector<SweepPose> poses;
+    std::vector<WeakDirection> weak;  // of the last sweep
     bool is_lost = false;
   };
   struct PriorMap {
@@ -60,6 +63,7 @@ private:
   void followUp(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
   void settle();
+  [[nodiscard]] std::size_t leastMoved() const;
   [[nodiscard]] std::vector<SE3> posesFoundBackwards(const Hypothesis& found) const;
 
   TrackSettings settings_;

@@ -32,12 +32,51 @@ constexpr int kFewest = 20;
 constexpr double kSmallStep = 0.1;
 constexpr int kFewestIterations = 4;
 
+/// What many residuals count as one beside what was known before: neighbours share the errors of the map.
+constexpr double kResidualsBesideMotion = 3.0;
+
 constexpr std::ptrdiff_t kChunk = 128;
 
-/// H, b and what the report tells, of some of the residuals (Eq. 10 to 14).
+using Square6 = Eigen::Matrix<double, 6, 6>;
+using Square12 = Eigen::Matrix<double, 12, 12>;
+using Column12 = Eigen::Matrix<double, 12, 1>;
+
+/// What noise of the planes' normals alone makes of the information: the sum of v A A^T, where A = (1, arm x) and v is
+/// the variance of a normal, weighted.
+struct NormalsNoise {
+  double sum = 0.0;
+  Eigen::Vector3d arms = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+
+  void add(double variance, const Eigen::Vector3d& arm)
+  {
+    sum += variance;
+    arms += variance * arm;
+    squares += variance * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  }
+  void add(const NormalsNoise& other)
+  {
+    sum += other.sum;
+    arms += other.arms;
+    squares += other.squares;
+  }
+  [[nodiscard]] Eigen::Matrix<double, 6, 6> information() const
+  {
+    Eigen::Matrix<double, 6, 6> n;
+    n << sum * Eigen::Matrix3d::Identity(), -skew(arms), skew(arms), squares;
+    return n;
+  }
+};
+
+/// H, b and what the report tells, of some of the residuals (Eq. 10 to 14). A perturbation of the velocity moves a
+/// point measured s periods after mid-sweep as one of the pose that is s times as great.
 struct Sums {
   Matrix6 information = Matrix6::Zero();
+  Matrix6 coupling = Matrix6::Zero();              // of pose and velocity
+  Matrix6 velocity_information = Matrix6::Zero();  // of the velocity
   Vector6 gradient = Vector6::Zero();
+  Vector6 velocity_gradient = Vector6::Zero();
+  NormalsNoise noise;
   double cost = 0.0;
   double squares = 0.0;
   double weight = 0.0;
@@ -48,10 +87,23 @@ struct Sums {
 
   [[nodiscard]] int count() const { return planes + lines + points; }
 
+  void addEquations(const Matrix6& h, const Vector6& b, double since_middle)
+  {
+    information += h;
+    coupling += since_middle * h;
+    velocity_information += since_middle * since_middle * h;
+    gradient += b;
+    velocity_gradient += since_middle * b;
+  }
+
   void add(const Sums& other)
   {
     information += other.information;
+    coupling += other.coupling;
+    velocity_information += other.velocity_information;
     gradient += other.gradient;
+    velocity_gradient += other.velocity_gradient;
+    noise.add(other.noise);
     cost += other.cost;
     squares += other.squares;
     weight += other.weight;
@@ -69,47 +121,31 @@ struct Sums {
 struct PlacedPoint {
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
-  double since_middle = 0.0;  ///< in sweeps: so much of what the pose makes of the sweep's motion moves it, too
+  double since_middle = 0.0;                        ///< in periods: so much of a change of the velocity moves it, too
 };
 
 class PoseEstimation {
 public:
-  explicit PoseEstimation(const SurfaceProblem& problem) : problem_(problem), pose_(problem.guess)
+  explicit PoseEstimation(const SurfaceProblem& problem)
+      : problem_(problem),
+        pose_(problem.prior.pose),
+        velocity_(problem.prior.velocity),
+        prior_(priorInformation(problem.prior)),
+        doubt_(problem.reach.topLeftCorner<3, 3>().trace())
   {
-    const Eigen::Matrix<double, 6, 6> covariance = problem.guess_covariance;
-    doubt_ = covariance.topLeftCorner<3, 3>().trace();
-    if (problem.guess_is_prior) {
-      prior_ = covariance.inverse();
-    }
   }
 
   SurfaceRegistration run()
   {
     SurfaceRegistration result;
-    RegistrationReport& report = result.report;
-    report.termination = Termination::iteration_limit;
-    Sums sums;
-    double look = kFirstLook;
-    for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
-      const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
-      const bool all = narrow || i >= kFewestIterations || problem_.scan.points->size() < kManyPoints;
-      turnSweepGain();
-      sums = accumulate(look, all ? 1 : kFirstStride);
-      report.iterations = i + 1;
-      const Vector6 step = sums.count() < kFewest ? Vector6(Vector6::Zero()) : stepOf(sums);
-      if (sums.count() < kFewest) {
-        report.termination = Termination::too_few_correspondences;
-      } else if (!step.allFinite()) {
-        report.termination = Termination::degenerate;
-      } else if (take(step, sums) && all && i + 1 >= kFewestIterations) {
-        report.termination = Termination::converged;
-      }
-      if (report.termination == Termination::converged) {
-        break;
-      }
+    Sums sums = iterate(result.report);
+    if (problem_.looks_for_weak && result.report.hasConverged() && findWeakDirections(sums)) {
+      pose_ = problem_.prior.pose;
+      velocity_ = problem_.prior.velocity;
+      sums = iterate(result.report);
     }
     conclude(result, sums);
-    if (problem_.wants_evidence && report.hasConverged()) {
+    if (problem_.wants_evidence && result.report.hasConverged()) {
       weighs_evidence_ = true;
       result.evidence = accumulate(0.0, 1).evidence;
     }
@@ -117,53 +153,86 @@ public:
   }
 
 private:
+  Sums iterate(RegistrationReport& report)
+  {
+    report.termination = Termination::iteration_limit;
+    Sums sums;
+    double look = kFirstLook;
+    for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
+      const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
+      const bool all = narrow || i >= kFewestIterations || problem_.scan.points->size() < kManyPoints;
+      sums = accumulate(look, all ? 1 : kFirstStride);
+      report.iterations = i + 1;
+      const Column12 step = sums.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
+      if (sums.count() < kFewest) {
+        report.termination = Termination::too_few_correspondences;
+      } else if (!step.allFinite()) {
+        report.termination = Termination::degenerate;
+      } else if (take(step, sums) && narrow && i + 1 >= kFewestIterations) {
+        report.termination = Termination::converged;
+        break;
+      }
+    }
+    return sums;
+  }
+
+  /// By how much the velocity follows the pose, and how well it is known then; and how well the pose is known.
+  [[nodiscard]] static Square12 priorInformation(const SweepPrior& prior)
+  {
+    constexpr double kNothingKnown = 1e-6;  // 1/m^2 and 1/rad^2: a kilometre
+    constexpr double kLeastVariance = 1e-12;
+    const Square12 covariance = prior.covariance;
+    const Square6 pose = covariance.topLeftCorner<6, 6>() + kLeastVariance * Square6::Identity();
+    const Square6 gain = pose.ldlt().solve(Square6(covariance.topRightCorner<6, 6>())).transpose();
+    const Square6 rest = covariance.bottomRightCorner<6, 6>() - gain * covariance.topRightCorner<6, 6>() +
+                         kLeastVariance * Square6::Identity();
+    const Square6 known = rest.inverse();
+    Square12 information;
+    information << gain.transpose() * known * gain, -gain.transpose() * known, -known * gain, known;
+    information.topLeftCorner<6, 6>() +=
+        prior.pose_counts ? Square6(pose.inverse()) : Square6(kNothingKnown * Square6::Identity());
+    return information;
+  }
+
   /// \return whether it was a small step
-  bool take(const Vector6& step, const Sums& sums)
+  bool take(const Column12& step, const Sums& sums)
   {
-    pose_.translation += step.head<3>();
-    pose_.rotation = nearestRotation(expSO3(step.tail<3>()) * pose_.rotation);
-    const Vector6 seen = sums.information * step;
-    return step.dot(seen) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
+    const Vector6 motion = step.head<6>();
+    const Eigen::Matrix3d back = pose_.rotation.transpose();
+    velocity_.head<3>() += back * step.segment<3>(6);
+    velocity_.tail<3>() += back * step.segment<3>(9);
+    pose_.translation += motion.head<3>();
+    pose_.rotation = nearestRotation(expSO3(motion.tail<3>()) * pose_.rotation);
+    const Vector6 seen = sums.information * motion;
+    return motion.dot(seen) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
   }
 
-  void turnSweepGain()
-  {
-    Eigen::Matrix<double, 6, 6> r = Eigen::Matrix<double, 6, 6>::Zero();
-    r.topLeftCorner<3, 3>() = pose_.rotation;
-    r.bottomRightCorner<3, 3>() = pose_.rotation;
-    sweep_gain_ = r * problem_.sweep.gain * r.transpose();
-  }
-
-  void conclude(SurfaceRegistration& result, Sums& sums)
+  void conclude(SurfaceRegistration& result, const Sums& sums)
   {
     RegistrationReport& report = result.report;
-    report.weak_directions = weakDirections(sums);
-    keepGuessAlongWeak(report, sums);
-    report.target_T_source = report.hasConverged() ? pose_ : problem_.guess;
-    report.sweep_twist = sweepTwist();
+    report.weak_directions = weak_;
+    report.target_T_source = report.hasConverged() ? pose_ : problem_.prior.pose;
+    report.sweep_twist = twist();
+    report.sweep_acceleration = acceleration();
     report.edge_correspondences = sums.lines;
     report.plane_correspondences = sums.planes;
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
-    report.information = sums.information;
+    report.information = strong_.transpose() * sums.information * strong_;
     report.cost = sums.cost;
     report.residual_rms = sums.weight > 0.0 ? std::sqrt(sums.squares / sums.weight) : 0.0;
-    report.covariance = posteriorOf(sums.information / kResidualsPerIndependentOne);
-    result.posterior = posteriorOf(sums.information);
+    result.posterior = posteriorOf(sums);
+    report.covariance = result.posterior.topLeftCorner<6, 6>();
+    result.velocity = velocity_;
     result.points = problem_.scan.points->size();
   }
 
-  [[nodiscard]] Matrix6 posteriorOf(const Matrix6& measured) const
+  [[nodiscard]] Square12 posteriorOf(const Sums& sums) const
   {
-    constexpr double kNothingKnown = 1e-6;  // 1/m^2 and 1/rad^2: a kilometre
-    constexpr double kHeld = 1e12;
-    Eigen::Matrix<double, 6, 6> information = measured + prior_;
-    for (int i = 0; i < 6; ++i) {
-      information(i, i) += problem_.locked[static_cast<std::size_t>(i)] ? kHeld : kNothingKnown;
-    }
-    Matrix6 covariance = information.inverse();
-    for (int i = 0; i < 6; ++i) {
-      if (problem_.locked[static_cast<std::size_t>(i)]) {
+    const Equations equations = equationsOf(sums);
+    Square12 covariance = equations.information.inverse();
+    for (int i = 0; i < 12; ++i) {
+      if (isLocked(i)) {
         covariance.row(i).setZero();
         covariance.col(i).setZero();
       }
@@ -171,60 +240,50 @@ private:
     return covariance;
   }
 
-  /// Those along which an average residual tells hardly anything. Rotations are scaled to metres.
-  [[nodiscard]] static std::vector<WeakDirection> weakDirections(const Sums& sums)
-  {
-    constexpr double kWeak = 1e-3;  // of residuals that tell of the direction alone; noise of the normals gives half
-    std::vector<WeakDirection> weak;
-    if (!(sums.squared_extent > 0.0)) {
-      return weak;
-    }
-    const Vector6 scale = scaleOf(sums);
-    const Eigen::Matrix<double, 6, 6> scaled = scale.asDiagonal() * sums.information * scale.asDiagonal() / sums.total;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(scaled);
-    for (int i = 0; i < 6 && solver.eigenvalues()[i] < kWeak; ++i) {
-      weak.push_back({solver.eigenvectors().col(i), std::max(0.0, solver.eigenvalues()[i])});
-    }
-    return weak;
-  }
+  [[nodiscard]] bool isLocked(int i) const { return problem_.locked[static_cast<std::size_t>(i % 6)]; }
 
-  /// Rotations in metres of a typical point's displacement.
-  [[nodiscard]] static Vector6 scaleOf(const Sums& sums)
+  /// Those along which no more is told than noise of the planes' normals would, so that it follows the sensor wherever
+  /// it goes. Rotations are scaled to metres. Along them the pose is left to the prior (solution remapping after Zhang
+  /// and Singh, 2016).
+  bool findWeakDirections(const Sums& sums)
   {
+    constexpr double kNothing = 1e-6;  // of residuals that tell of the direction alone
+    if (!(sums.squared_extent > 0.0)) {
+      return false;
+    }
     const double per_metre = std::sqrt(sums.total / sums.squared_extent);
     Vector6 scale;
     scale << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
-    return scale;
+    const Square6 scaled = scale.asDiagonal() * sums.information * scale.asDiagonal() / sums.total;
+    const Square6 noise = scale.asDiagonal() * sums.noise.information() * scale.asDiagonal() / sums.total;
+    const Eigen::SelfAdjointEigenSolver<Square6> solver(scaled);
+    Square6 strong = Square6::Identity();
+    for (int i = 0; i < 6; ++i) {
+      const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
+      const double told = std::max(0.0, solver.eigenvalues()[i]);
+      if (told < direction.dot(noise * direction) + kNothing) {
+        weak_.push_back({direction, told});
+        strong -= direction * direction.transpose();
+      }
+    }
+    strong_ = scale.asDiagonal() * strong * scale.cwiseInverse().asDiagonal();
+    return !weak_.empty();
   }
 
-  /// Along what hardly anything tells of, the pose stays at the guess, and the information is none: what there seems to
-  /// be is noise, and follows the sensor (solution remapping after Zhang and Singh, 2016).
-  void keepGuessAlongWeak(RegistrationReport& report, Sums& sums)
+  [[nodiscard]] Vector6 twist() const { return problem_.prior.fraction * placingVelocity(); }
+
+  [[nodiscard]] Vector6 placingVelocity() const
   {
-    if (report.weak_directions.empty()) {
-      return;
-    }
-    const Vector6 scale = scaleOf(sums);
-    Eigen::Matrix<double, 6, 6> strong = Eigen::Matrix<double, 6, 6>::Identity();
-    for (const WeakDirection& weak : report.weak_directions) {
-      const Eigen::Matrix<double, 6, 1> direction = weak.direction;
-      strong -= direction * direction.transpose();
-    }
-    const Eigen::Matrix<double, 6, 6> kept = scale.asDiagonal() * strong * scale.cwiseInverse().asDiagonal();
-    Eigen::Matrix<double, 6, 1> off;
-    off << pose_.translation - problem_.guess.translation, logSO3(pose_.rotation * problem_.guess.rotation.transpose());
-    const Eigen::Matrix<double, 6, 1> moved = kept * off;
-    pose_.translation = problem_.guess.translation + moved.head<3>();
-    pose_.rotation = nearestRotation(expSO3(moved.tail<3>()) * problem_.guess.rotation);
-    sums.information = kept.transpose() * Eigen::Matrix<double, 6, 6>(sums.information) * kept;
+    return problem_.placement == SweepPlacement::held ? problem_.prior.velocity : velocity_;
   }
 
-  [[nodiscard]] Vector6 sweepTwist() const
+  /// Over the sweep, from how the velocity has changed since the last one.
+  [[nodiscard]] Vector6 acceleration() const
   {
-    Eigen::Matrix<double, 6, 1> off;
-    const Eigen::Matrix3d back = problem_.guess.rotation.transpose();
-    off << back * (pose_.translation - problem_.guess.translation), logSO3(back * pose_.rotation);
-    return problem_.sweep.twist + problem_.sweep.gain * off;
+    const SweepPrior& prior = problem_.prior;
+    return prior.periods_between > 0.0 ? Vector6(prior.fraction * prior.fraction / prior.periods_between *
+                                                 (placingVelocity() - prior.velocity_before))
+                                       : Vector6(Vector6::Zero());
   }
 
   [[nodiscard]] Sums accumulate(double look, std::size_t stride) const
@@ -239,7 +298,7 @@ private:
   /// In fixed chunks, added in order: the same bits for every number of threads.
   [[nodiscard]] Sums accumulate(const SurfaceTerm& term, double look, std::size_t stride) const
   {
-    const MovingSensor sensor(pose_, sweepTwist());
+    const MovingSensor sensor(pose_, twist(), acceleration());
     const auto count = static_cast<std::ptrdiff_t>((term.points->size() + stride - 1) / stride);
     const std::ptrdiff_t chunks = (count + kChunk - 1) / kChunk;
     std::vector<Sums> parts(static_cast<std::size_t>(chunks));
@@ -263,12 +322,13 @@ private:
     std::array<std::uint32_t, kChunk> lasers{};
     std::array<Surface, kChunk> surfaces;
     std::size_t n = 0;
+    const double slope = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     places.fill(Eigen::Vector3d::Zero());
     for (std::ptrdiff_t i = begin; i < end; ++i, ++n) {
       const ScanPoint& point = (*term.points)[static_cast<std::size_t>(i) * stride];
       placed[n].arm = pose_.rotation * sensor.undistorted(point);
       placed[n].place = places[n] = pose_.translation + placed[n].arm;
-      placed[n].since_middle = MovingSensor::sinceMiddle(point);
+      placed[n].since_middle = slope * MovingSensor::sinceMiddle(point);
       // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
       lasers[n] = weighs_evidence_ ? kNoLaser : point.laser;
     }
@@ -293,10 +353,11 @@ private:
     const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + (1.0 + tilt) / plane.count);
     Vector6 row;
     row << plane.direction, p.arm.cross(plane.direction);
-    row += p.since_middle * (sweep_gain_.transpose() * row);
     const double w = weight(r * r, variance, doubtOf(row, look), p, sums);
-    sums.information += w * row * row.transpose();
-    sums.gradient += (w * r) * row;
+    sums.addEquations(w * row * row.transpose(), (w * r) * row, p.since_middle);
+    // Three points go into the plane; its thickness is what noise leaves to the others.
+    const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
+    sums.noise.add(w * noise / (plane.count * std::max(plane.extent, kNoExtent)), p.arm);
     ++sums.planes;
   }
 
@@ -313,21 +374,19 @@ private:
     Eigen::Matrix<double, 3, 6> rows;
     rows.leftCols<3>().setIdentity();
     rows.rightCols<3>() = -skew(p.arm);
-    rows += p.since_middle * (rows * sweep_gain_);
     const double length = is_line ? r.norm() : from_center.norm();
     const Eigen::Vector3d direction =
         length > 0.0 ? Eigen::Vector3d((is_line ? r : from_center) / length) : Eigen::Vector3d(Eigen::Vector3d::Zero());
     const Vector6 row = rows.transpose() * direction;
     const double variance = kRangeNoise * kRangeNoise + surface.thickness;
     const double w = weight(squared, variance, doubtOf(row, look), p, sums);
-    sums.information += w * rows.transpose() * felt * rows;
-    sums.gradient += w * rows.transpose() * r;
+    sums.addEquations(w * rows.transpose() * felt * rows, w * rows.transpose() * r, p.since_middle);
   }
 
   /// Squared distance by which the point may still be off with the pose along its residual, m^2.
   [[nodiscard]] double doubtOf(const Vector6& row, double look) const
   {
-    return kLeastDoubt * kLeastDoubt + look * look * row.dot(problem_.guess_covariance * row);
+    return kLeastDoubt * kLeastDoubt + look * look * row.dot(problem_.reach * row);
   }
 
   [[nodiscard]] double weight(double squared, double variance, double doubt, const PlacedPoint& p, Sums& sums) const
@@ -350,31 +409,54 @@ private:
     return robust / variance;
   }
 
-  /// The Gauss-Newton step, the guess's own measurement included.
-  [[nodiscard]] Vector6 stepOf(const Sums& sums) const
+  struct Equations {
+    Square12 information;
+    Column12 gradient;
+  };
+
+  /// Of pose and velocity: what the residuals say, as so many independent ones, and what was known before.
+  [[nodiscard]] Equations equationsOf(const Sums& sums) const
   {
-    Vector6 off;
-    off.head<3>() = pose_.translation - problem_.guess.translation;
-    off.tail<3>() = logSO3(pose_.rotation * problem_.guess.rotation.transpose());
-    Eigen::Matrix<double, 6, 6> h = sums.information + prior_;
-    Eigen::Matrix<double, 6, 1> b = sums.gradient + prior_ * off;
-    for (int i = 0; i < 6; ++i) {
-      if (problem_.locked[static_cast<std::size_t>(i)]) {
-        h.row(i).setZero();
-        h.col(i).setZero();
-        h(i, i) = 1.0;
-        b[i] = 0.0;
+    const auto cleaned = [&](const Matrix6& m) { return Square6(strong_.transpose() * m * strong_); };
+    Column12 off;
+    off.head<3>() = pose_.translation - problem_.prior.pose.translation;
+    off.segment<3>(3) = logSO3(pose_.rotation * problem_.prior.pose.rotation.transpose());
+    const Vector6 faster = velocity_ - problem_.prior.velocity;
+    off.segment<3>(6) = pose_.rotation * faster.head<3>();
+    off.segment<3>(9) = pose_.rotation * faster.tail<3>();
+    Equations equations;
+    equations.information << cleaned(sums.information), cleaned(sums.coupling), cleaned(sums.coupling),
+        cleaned(sums.velocity_information);
+    equations.information /= kResidualsBesideMotion;
+    equations.information += prior_;
+    equations.gradient << strong_.transpose() * sums.gradient, strong_.transpose() * sums.velocity_gradient;
+    equations.gradient /= kResidualsBesideMotion;
+    equations.gradient += prior_ * off;
+    for (int i = 0; i < 12; ++i) {
+      if (isLocked(i)) {
+        equations.information.row(i).setZero();
+        equations.information.col(i).setZero();
+        equations.information(i, i) = 1.0;
+        equations.gradient[i] = 0.0;
       }
     }
-    return -h.ldlt().solve(b);
+    return equations;
+  }
+
+  [[nodiscard]] Column12 stepOf(const Sums& sums) const
+  {
+    const Equations equations = equationsOf(sums);
+    return -equations.information.ldlt().solve(equations.gradient);
   }
 
   const SurfaceProblem& problem_;
   SE3 pose_;
-  Matrix6 prior_ = Matrix6::Zero();
+  Vector6 velocity_;  // per period, in the sensor's axes
+  Square12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
-  Eigen::Matrix<double, 6, 6> sweep_gain_ = Eigen::Matrix<double, 6, 6>::Zero();  // in the target's axes
+  std::vector<WeakDirection> weak_;
+  Square6 strong_ = Square6::Identity();  // projects on all other directions
 };
 
 }  // namespace
@@ -382,12 +464,12 @@ private:
 SurfaceRegistration registerSurfaces(const SurfaceProblem& problem)
 {
   SurfaceRegistration nothing;
-  nothing.report.target_T_source = problem.guess;
+  nothing.report.target_T_source = problem.prior.pose;
   if (problem.scan.target == nullptr || problem.scan.target->empty()) {
     nothing.report.termination = Termination::empty_target;
     return nothing;
   }
-  if (!problem.guess.isFinite()) {
+  if (!problem.prior.pose.isFinite()) {
     nothing.report.termination = Termination::invalid_input;
     return nothing;
   }

@@ -8,6 +8,7 @@
 #include <pcl_floam/registration/registration_parameters.h>
 #include <pcl_floam/registration/registration_report.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
@@ -18,33 +19,46 @@ struct SurfaceTerm {
   const SurfaceSearch* target = nullptr;
 };
 
-/// The motion during the sweep as it depends on the unknown pose: log(T(0)^-1 T(1)) = twist + gain e, with e how far
-/// the pose is from the guess, in the sensor's axes.
-struct SweepDependence {
-  Vector6 twist = Vector6::Zero();
-  Matrix6 gain = Matrix6::Zero();
+using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
+
+/// How a sweep's points follow the sensor's motion during it.
+enum class SweepPlacement : std::uint8_t {
+  held,     ///< they are placed by the velocity that was expected
+  follows,  ///< by the velocity that each iteration makes of the pose
+  joint     ///< and pose and velocity are what explains them best
+};
+
+/// What is expected of a sweep.
+struct SweepPrior {
+  SE3 pose;                                   ///< target_T_sensor at mid-sweep: the guess
+  Vector6 velocity = Vector6::Zero();         ///< there, m and rad a period, in the sensor's axes
+  Vector6 velocity_before = Vector6::Zero();  ///< in the middle of the sweep before
+  double periods_between = 0.0;               ///< since then; 0: the velocity is taken for constant
+  /// Of pose and velocity: perturbations on the left (translation m, rotation rad), about the sensor's position, the
+  /// target's axes.
+  Matrix12 covariance = Matrix12::Identity();
+  bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
+  double fraction = 0.0;    ///< duration of the sweep in periods
 };
 
 /// What is to be registered, and what is known before.
 struct SurfaceProblem {
   SurfaceTerm scan;   ///< points taken by space
   SurfaceTerm edges;  ///< the paper's edge features
-  SE3 guess;          ///< target_T_sensor at mid-sweep
-  /// Of the guess: perturbation on the left (translation m, rotation rad), about the sensor's position, the target's
-  /// axes. It bounds how far the first iterations look.
-  Matrix6 guess_covariance = Matrix6::Identity();
-  bool guess_is_prior = true;  ///< the guess counts as a measurement of that covariance
-  SweepDependence sweep;
+  SweepPrior prior;
+  Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess that bounds how far the first iterations look
+  SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   bool wants_evidence = false;   ///< else the result has none
+  bool looks_for_weak = true;    ///< directions that the scan does not tell of
   int max_iterations = 12;
   int threads = 1;
 };
 
 struct SurfaceRegistration {
   RegistrationReport report;
-  /// Of the pose, prior included, as if all residuals were independent: how the iterations weighed them.
-  Matrix6 posterior = Matrix6::Zero();
+  Vector6 velocity = Vector6::Zero();     ///< per period, in the sensor's axes
+  Matrix12 posterior = Matrix12::Zero();  ///< of pose and velocity, as the prior's
   /// Log-likelihood of the points where the pose has them, over that of points that may be anywhere within a metre.
   double evidence = 0.0;
   std::size_t points = 0;  ///< that took part

@@ -7,13 +7,18 @@
 
 namespace pcl_floam {
 
-/// The sensor's pose in the middle of a sweep, and its motion during it: T(u) = T exp(u xi) for u in [-1/2, 1/2] (Eq. 3
-/// and 4; the paper's (N - n)/N moves the wrong end of the sweep, and of all its instants the middle is the one whose
-/// pose depends least on the motion).
+/// The sensor's pose in the middle of a sweep, and its motion during it: T(u) = T exp(u xi + u^2 alpha / 2) for u in
+/// [-1/2, 1/2] (Eq. 3 and 4; the paper's (N - n)/N moves the wrong end of the sweep, and of all its instants the middle
+/// is the one whose pose depends least on the motion; without alpha, whatever sways is off by a part of each swing).
 class MovingSensor {
 public:
-  explicit MovingSensor(const SE3& target_T_sensor, const Vector6& twist = Vector6::Zero())
-      : pose_(target_T_sensor), velocity_(twist.head<3>()), turn_(twist.tail<3>())
+  explicit MovingSensor(const SE3& target_T_sensor, const Vector6& twist = Vector6::Zero(),
+                        const Vector6& acceleration = Vector6::Zero())
+      : pose_(target_T_sensor),
+        velocity_(twist.head<3>()),
+        turn_(twist.tail<3>()),
+        half_acceleration_(0.5 * acceleration.head<3>()),
+        half_turn_acceleration_(0.5 * acceleration.tail<3>())
   {
   }
 
@@ -28,10 +33,11 @@ public:
   {
     const double u = sinceMiddle(point);
     const Eigen::Vector3d p(point.x, point.y, point.z);
-    const Eigen::Vector3d first = u * (turn_.cross(p) + velocity_);
-    const Eigen::Vector3d second = (0.5 * u) * turn_.cross(first);
-    const Eigen::Vector3d third = (u / 3.0) * turn_.cross(second);
-    return p + first + second + third + (0.25 * u) * turn_.cross(third);
+    const Eigen::Vector3d turn = turn_ + u * half_turn_acceleration_;
+    const Eigen::Vector3d first = u * (turn.cross(p) + velocity_ + u * half_acceleration_);
+    const Eigen::Vector3d second = (0.5 * u) * turn.cross(first);
+    const Eigen::Vector3d third = (u / 3.0) * turn.cross(second);
+    return p + first + second + third + (0.25 * u) * turn.cross(third);
   }
 
   /// The place of a point in the target's frame.
@@ -41,6 +47,8 @@ private:
   SE3 pose_;
   Eigen::Vector3d velocity_;
   Eigen::Vector3d turn_;
+  Eigen::Vector3d half_acceleration_;
+  Eigen::Vector3d half_turn_acceleration_;
 };
 
 }  // namespace pcl_floam

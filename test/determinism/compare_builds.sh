@@ -25,7 +25,7 @@ for threads in 2 3 8; do
   run "threads$threads" "$release" --threads "$threads"
 done
 for threads in 1 3; do
-  run "surfaces$threads" "$release" --engine surfaces --threads "$threads"
+  run "features$threads" "$release" --engine features --threads "$threads"
 done
 run debug "$build/debug/bin/pcl_floam_odometry"
 
@@ -34,7 +34,7 @@ for name in again threads2 threads3 threads8; do
     cmp "$work/once/$file" "$work/$name/$file"
   done
 done
-cmp "$work/surfaces1/poses.kitti.txt" "$work/surfaces3/poses.kitti.txt"
+cmp "$work/features1/poses.kitti.txt" "$work/features3/poses.kitti.txt"
 echo "poses and maps are equal to the bit: $(sha256sum <"$work/once/poses.kitti.txt" | cut -c 1-16)"
 paste -d ' ' "$work/once/poses.kitti.txt" "$work/debug/poses.kitti.txt" | awk '
   NF != 24 { exit 1 }

@@ -76,8 +76,9 @@ SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const SurfaceSear
 {
   SurfaceProblem problem;
   problem.scan = {&points, &target};
-  problem.guess_covariance = 0.1 * Matrix6(Matrix6::Identity());
-  problem.guess_is_prior = false;
+  problem.reach = 0.1 * Matrix6(Matrix6::Identity());
+  problem.prior.covariance = 0.1 * Matrix12(Matrix12::Identity());
+  problem.prior.pose_counts = false;
   return problem;
 }
 
@@ -94,10 +95,12 @@ TEST(MovingSensor, IsTheExponentialOfTheTwist)
   for (int i = 0; i < 50; ++i) {
     const SE3 pose = exp(test::randomTwist(random, 5.0, 2.0));
     const Vector6 twist = test::randomTwist(random, 2.0, 0.4);
-    const MovingSensor sensor(pose, twist);
+    const Vector6 acceleration = test::randomTwist(random, 0.4, 0.1);
+    const MovingSensor sensor(pose, twist, acceleration);
     const ScanPoint point{static_cast<float>(test::uniform(random, 20.0)),      3.0F, -1.0F,
                           static_cast<float>(0.5 + test::uniform(random, 0.5)), 0,    -1};
-    const SE3 at = pose * exp(MovingSensor::sinceMiddle(point) * twist);
+    const double u = MovingSensor::sinceMiddle(point);
+    const SE3 at = pose * exp(u * twist + 0.5 * u * u * acceleration);
     const Eigen::Vector3d expected = at * Eigen::Vector3d(point.x, point.y, point.z);
     EXPECT_LT((sensor.at(point) - expected).norm(), 2e-4);
   }
@@ -120,21 +123,50 @@ TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
 {
   std::mt19937 random(9);
   for (int i = 0; i < 10; ++i) {
-    const SE3 earlier = exp(test::randomTwist(random, 0.2, 0.05));
-    const SE3 truth = earlier * exp(test::randomTwist(random, 0.3, 0.08));
-    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, log(earlier.inverse() * truth)), 900);
+    const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
+    const Vector6 twist = test::randomTwist(random, 0.3, 0.08);
+    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, twist), 900);
     const Corner corner(3);
     SurfaceProblem problem = problemOf(points, corner);
     EXPECT_GT(distance(registerSurfaces(problem).report.target_T_source, truth), 1e-3)
         << "the sweep's motion must matter";
-    problem.guess = earlier;
-    problem.sweep.gain.setIdentity();
-    for (int again = 0; again < 3; ++again) {  // the dependence on the pose is linear about the guess
-      problem.sweep.twist = log(earlier.inverse() * problem.guess);
-      problem.guess = registerSurfaces(problem).report.target_T_source;
-    }
-    EXPECT_LT(distance(problem.guess, truth), 3e-4);
+    problem.prior.fraction = 0.8;
+    const SurfaceRegistration found = registerSurfaces(problem);
+    EXPECT_LT(distance(found.report.target_T_source, truth), 3e-4);
+    EXPECT_LT((found.report.sweep_twist - twist).norm(), 2e-3);
+    EXPECT_LT((0.8 * found.velocity - twist).norm(), 2e-3);
   }
+}
+
+TEST(SurfaceRegistration, FindsTheAccelerationFromTheVelocityBefore)
+{
+  std::mt19937 random(10);
+  const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
+  const Vector6 before = test::randomTwist(random, 0.2, 0.05);
+  const Vector6 twist = test::randomTwist(random, 0.2, 0.05);
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, twist, 0.5 * (twist - before)), 900);
+  const Corner corner(3);
+  SurfaceProblem problem = problemOf(points, corner);
+  problem.prior.fraction = 1.0;
+  problem.prior.velocity_before = before;
+  problem.prior.periods_between = 2.0;
+  EXPECT_LT(distance(registerSurfaces(problem).report.target_T_source, truth), 3e-4);
+  problem.prior.periods_between = 0.0;
+  EXPECT_GT(distance(registerSurfaces(problem).report.target_T_source, truth), 6e-4) << "it must matter";
+}
+
+/// Where the velocity is known to follow the pose, a sweep without freedom of its own tells of it all the same.
+TEST(SurfaceRegistration, TheVelocityFollowsThePoseAsThePriorHasIt)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.1, 0.05, 0.0));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner corner(3);
+  SurfaceProblem problem = problemOf(points, corner);
+  problem.placement = SweepPlacement::held;
+  problem.prior.covariance.topRightCorner<6, 6>() = 0.05 * Matrix6(Matrix6::Identity());
+  problem.prior.covariance.bottomLeftCorner<6, 6>() = 0.05 * Matrix6(Matrix6::Identity());
+  const SurfaceRegistration found = registerSurfaces(problem);
+  EXPECT_LT((found.velocity.head<3>() - 0.5 * truth.translation).norm(), 1e-3);
 }
 
 TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
@@ -143,7 +175,7 @@ TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
   const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
   const Corner floor(1);
   SurfaceProblem problem = problemOf(points, floor);
-  problem.guess_is_prior = true;
+  problem.prior.pose_counts = true;
   const RegistrationReport report = registerSurfaces(problem).report;
   ASSERT_TRUE(report.hasConverged());
   EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 1e-3);
@@ -199,7 +231,7 @@ TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
     map.insert({point.x, point.y, point.z}, static_cast<std::uint32_t>(point.time * 16.0F));
   }
   SurfaceProblem problem = problemOf(points, map);
-  problem.guess.translation.x() = 0.1;
+  problem.prior.pose.translation.x() = 0.1;
   const RegistrationReport one = registerSurfaces(problem).report;
   for (const int threads : {2, 3, 8}) {
     problem.threads = threads;

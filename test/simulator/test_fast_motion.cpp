@@ -40,6 +40,7 @@ TEST_P(FastMotion, IsFollowedFromTheFirstScanOn)
   constexpr std::size_t kScans = 60;
   Simulation simulation(fasterSwing(21, GetParam()));
   OdometryParameters parameters;
+  parameters.engine = OdometryEngine::features;
   parameters.pose_instant = PoseInstant::middle;
   Odometry<PointXYZIRT> odometry(parameters);
   SE3 first;

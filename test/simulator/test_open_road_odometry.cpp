@@ -41,7 +41,6 @@ TEST_P(OpenRoadOdometry, IsFollowed)
   options.sensor = GetParam().sensor;
   Simulation simulation(options);
   OdometryParameters parameters;
-  parameters.engine = OdometryEngine::surfaces;
   Odometry<PointXYZIRT> odometry(parameters);
   SE3 last_truth;
   SE3 last_estimate;

@@ -23,6 +23,7 @@ double errorAside(PoseInstant instant)
   options.seed = 41;
   Simulation simulation(options);
   OdometryParameters parameters;
+  parameters.engine = OdometryEngine::features;
   parameters.pose_instant = instant;
   Odometry<PointXYZIRT> odometry(parameters);
   SE3 last_estimate;

@@ -43,7 +43,10 @@ SimulationOptions optionsOf(const Start& start)
 /// The first sweeps, and what the odometry makes of them.
 class FirstScans {
 public:
-  explicit FirstScans(const SimulationOptions& options) : simulation_(options) {}
+  explicit FirstScans(const SimulationOptions& options, OdometryEngine engine = OdometryEngine::surfaces)
+      : simulation_(options), odometry_(parametersOf(engine))
+  {
+  }
 
   const OdometryReport& next()
   {
@@ -78,12 +81,27 @@ public:
     return greatest;
   }
 
+  /// m: by how much the last scan changed poses before, at most.
+  [[nodiscard]] double correctedBy() const { return corrected_by_; }
+
 private:
+  static OdometryParameters parametersOf(OdometryEngine engine)
+  {
+    OdometryParameters parameters;
+    parameters.engine = engine;
+    return parameters;
+  }
+
   [[nodiscard]] double stamp() const { return 0.1 * static_cast<double>(number_); }
 
   const OdometryReport& note(const OdometryReport& report)
   {
     EXPECT_LE(report.corrected_poses.size(), estimate_.size());
+    corrected_by_ = 0.0;
+    for (std::size_t i = 0; i < report.corrected_poses.size(); ++i) {
+      const SE3& before = estimate_[estimate_.size() - report.corrected_poses.size() + i];
+      corrected_by_ = std::max(corrected_by_, (report.corrected_poses[i].translation - before.translation).norm());
+    }
     std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
               estimate_.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
     estimate_.push_back(report.world_T_sensor);
@@ -103,6 +121,7 @@ private:
   std::vector<SE3> truth_;
   std::vector<SE3> estimate_;
   std::size_t number_ = 0;
+  double corrected_by_ = 0.0;
 };
 
 class StartsInTraffic : public testing::TestWithParam<Start> {};
@@ -131,36 +150,36 @@ INSTANTIATE_TEST_SUITE_P(Highway, AmbiguousStarts,
                                          Start{23, 0.0, 0.3, "vlp16"}, Start{31, 0.0, 0.0, "hdl32"}),
                          nameOf);
 
-constexpr int kSettled = 10;  // scans after which the start must be known
-constexpr int kScans = 13;
+constexpr int kSettled = 12;  // scans after which the start must be known
+constexpr int kScans = 15;
 
 TEST_P(AmbiguousStarts, TheNextScansTell)
 {
   FirstScans scans(optionsOf(GetParam()));
-  int changes = 0;
   for (int number = 0; number < kScans; ++number) {
-    const OdometryReport& report = scans.next();
-    changes += report.state == TrackingState::tracked && !report.reason.empty() ? 1 : 0;
-    EXPECT_EQ(report.crowded, number > 0) << number << ": traffic still has most of the points";
+    scans.next();
     if (number >= kSettled) {
       EXPECT_LT(scans.motionError(), 0.3) << number;
       EXPECT_LT(scans.wayError(), 1.0) << number;
     }
   }
-  EXPECT_EQ(changes, 1) << "the report tells once that the start was another";
-  EXPECT_LT(scans.greatestWayError(), 1.0) << "and what the poses before should have been";
+  EXPECT_LT(scans.greatestWayError(), 1.0) << "the report tells what the poses before should have been";
 }
 
 TEST_P(AmbiguousStarts, AreToldOf)
 {
   FirstScans scans(optionsOf(GetParam()));
+  constexpr double kJump = 0.1;  // m
   bool was_provisional = false;
   for (int number = 0; number < kScans; ++number) {
     const OdometryReport& report = scans.next();
-    EXPECT_TRUE(report.corrected_poses.empty() || (was_provisional && !report.provisional)) << number;
-    EXPECT_EQ(report.corrected_poses.empty(), report.reason.empty()) << number;
+    EXPECT_TRUE(report.corrected_poses.empty() || number < kSettled) << number;
     EXPECT_FALSE(report.provisional && number >= kSettled) << number;
-    was_provisional = report.provisional;
+    was_provisional = was_provisional || report.provisional;
+    if (scans.correctedBy() > kJump) {
+      EXPECT_TRUE(was_provisional) << number;
+      EXPECT_FALSE(report.reason.empty()) << number;
+    }
   }
 }
 
@@ -169,7 +188,7 @@ TEST_P(AmbiguousStarts, AreSettledWithAScanMissing)
   // Half of a period's way at 25 m/s: with another motion the way would be off by several periods'.
   constexpr double kHalfAPeriod = 1.25;
   for (const int missing : {1, 2}) {
-    FirstScans scans(optionsOf(GetParam()));
+    FirstScans scans(optionsOf(GetParam()), OdometryEngine::features);
     for (int number = 0; number < kScans + missing; ++number) {
       number == missing ? scans.miss() : scans.next();
     }
@@ -235,7 +254,7 @@ TEST_P(StandingBesideTraffic, TheSensorStands)
 {
   SimulationOptions options = optionsOf(GetParam());
   options.standing = -4.0;  // on the hard shoulder
-  FirstScans scans(options);
+  FirstScans scans(options, OdometryEngine::features);
   for (int number = 0; number < kScans; ++number) {
     scans.next();
     if (number >= kSettled) {

@@ -30,6 +30,7 @@ protected:
   static OdometryParameters middleOfTheSweep()
   {
     OdometryParameters parameters;
+    parameters.engine = OdometryEngine::features;
     parameters.pose_instant = PoseInstant::middle;
     return parameters;
   }
@@ -108,5 +109,25 @@ INSTANTIATE_TEST_SUITE_P(Tunnels, UnobservableDirection,
                          testing::Values(TunnelDrive{21, 15}, TunnelDrive{22, 15},
                                          TunnelDrive{23, 30}),  // its noise is taken for knowledge until scan 29
                          [](const auto& drive) { return std::to_string(drive.param.seed); });
+
+/// Surfaces name it in nearly all scans, once their map is more than the noise of a few.
+TEST(UnobservableDirectionOfSurfaces, IsReported)
+{
+  constexpr std::size_t kTunnelScans = 80;
+  constexpr std::size_t kJudgedFrom = 15;
+  SimulationOptions options;
+  options.world = "tunnel";
+  options.seed = 25;
+  Simulation simulation(options);
+  Odometry<PointXYZIRT> odometry;
+  std::size_t named = 0;
+  for (std::size_t scan = 0; scan < kTunnelScans; ++scan) {
+    const OdometryReport& report = odometry.track(simulation.sweep(scan).cloud, 0.1 * static_cast<double>(scan));
+    const bool is_named = !report.registration.weak_directions.empty();
+    named += is_named && scan >= kJudgedFrom ? 1 : 0;
+    EXPECT_TRUE(!is_named || report.registration.covariance.trace() > 1e-4) << scan;
+  }
+  EXPECT_GT(named, (kTunnelScans - kJudgedFrom) * 9 / 10);
+}
 
 }  // namespace pcl_floam::simulator

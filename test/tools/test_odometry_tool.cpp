@@ -49,7 +49,8 @@ TEST_F(OdometryTool, FollowsTheDrive)
 
 TEST_F(OdometryTool, SaysInHowManyScansADirectionWasWeak)
 {
-  const Outcome outcome = odometry("scans -o result --weak-threshold 0.1 --plot none");  // nothing is seen well enough
+  // Nothing is seen well enough.
+  const Outcome outcome = odometry("scans -o result --engine features --weak-threshold 0.1 --plot none");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("weak directions"), std::string::npos);
   EXPECT_GT(summary()["scans"]["with_weak_directions"], kScans / 2);
@@ -155,6 +156,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o result --elevations 1", "2"},
       {"scans -o result --compensation some", "continuous|two-stage|loam|none"},
       {"scans -o result --solver magic", "gauss-newton|ceres"},
+      {"scans -o result --solver ceres", "--engine features"},
       {"scans -o result --vertical-correction 90", "vertical_correction is 90"},
       {"scans -o result --edge-voxel-size 0", "edge_voxel_size is 0"},
       {"scans -o result --ground-truth nowhere.txt", "nowhere.txt: cannot be read"},
@@ -183,8 +185,9 @@ TEST_F(OdometryTool, HelpNamesEveryChoice)
 TEST_F(OdometryTool, EveryChoiceRuns)
 {
   for (const char* option :
-       {"--engine surfaces", "--compensation none", "--compensation loam", "--solver ceres", "--search kdtree",
-        "--weights printed", "--weights inverted", "--weight-normalization sum-one", "--kernel none",
+       {"--engine features", "--compensation none", "--compensation loam", "--engine features --solver ceres",
+        "--search kdtree", "--engine features --weights printed", "--engine features --weights inverted",
+        "--engine features --weight-normalization sum-one", "--engine features --kernel none", "--planar",
         "--smoothness vector-sum", "--pose-instant start", "--threads 2", "--scan-lines elevation-clusters",
         "--timing none", "--quiet"}) {
     const Outcome outcome = odometry(std::string("scans -o result --plot none --max-scans 3 ") + option);

@@ -7,15 +7,12 @@
 namespace pcl_floam {
 
 enum class OdometryEngine : std::uint8_t {
-  /// `features`; and `surfaces` where the first scan of enough points has no scan lines.
-  automatic,
-  /// The paper's features, with the nearest points of the map. The quicker one, and the better one at close range.
-  /// Needs
-  /// scan lines.
+  /// The paper's features, with the nearest points of the map: the paper's own pipeline, and the quicker one. Needs
+  /// scan lines. On open roads the sensor's own rings on the ground look like rest to it.
   features,
   /// Points taken by space and the paper's edges, with surfaces of a pyramid of voxels that remembers which lasers saw
-  /// them. Holds on open roads, where the sensor's own rings on the ground look like rest; and for lidars without scan
-  /// lines. Of the registration's parameters it uses `locked` alone.
+  /// them. Holds on open roads, and for lidars without scan lines. Of the registration's parameters it uses `locked`
+  /// alone.
   surfaces
 };
 

@@ -16,7 +16,7 @@ namespace pcl_floam {
 
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
-  OdometryEngine engine = OdometryEngine::automatic;
+  OdometryEngine engine = OdometryEngine::surfaces;
   SensorModel sensor;  ///< default "auto"
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   ScanTimingSource timing_source = ScanTimingSource::automatic;

@@ -43,12 +43,11 @@ struct OdometryReport {
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// The first two scans did not tell how the sensor moved (fast, among traffic), and several motions are followed: the
-  /// poses since then may yet be corrected, by more than `covariance` tells. Ends at the ninth scan with features at
-  /// the latest.
+  /// poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at the latest.
   bool provisional = false;
-  /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where they have turned out
-  /// to be wrong, or were unknown because the second scan was missing; for whoever keeps the trajectory. Empty
-  /// otherwise.
+  /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
+  /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
+  /// was missing; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
   /// The pose is that of features that are spread evenly over the scene, instead of all: after a start among cars that
   /// could be taken for the world, and where what fills a part of the view, such as a lorry beside the sensor, draws
@@ -62,7 +61,7 @@ struct OdometryReport {
   /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map
   /// without an earlier one took in by then stays. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
-  OdometryEngine engine = OdometryEngine::automatic;  ///< which one was taken; `automatic` while none is
+  OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
