@@ -9,8 +9,7 @@ namespace pcl_floam {
 namespace {
 
 /// Variance of the acceleration's change within one period, over that of a usual pose: of the first filter, and by how
-/// much it grows from one filter to the next. On recorded registrations, with 8 filters instead of 15 the hand's pitch
-/// was worse by a quarter.
+/// much it grows from one filter to the next.
 constexpr double kLeastChange = 1e-8;
 constexpr double kStep = 10.0;
 

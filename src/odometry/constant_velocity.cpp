@@ -13,7 +13,7 @@ constexpr double kMaxExtrapolation = 10.0;  // periods
 constexpr double kFarthest = 4.0;           // m; beyond it the nearest surface is as likely as not another one
 
 /// A pose's covariance is that of an average scene. Where little tells of a direction its errors are larger and go on
-/// from scan to scan. With 1 a drive along a corridor with 30 % of its returns missing came to 18 instead of 10 cm.
+/// from scan to scan.
 constexpr double kPoseErrorsPerVariance = 4.0;
 
 }  // namespace
@@ -81,7 +81,7 @@ Vector6 VelocityNoise::variance() const
 MotionPrior VelocityNoise::prior(const SE3& predicted, const Vector6& sweep_twist, double periods,
                                  double sweep_fraction) const
 {
-  constexpr double kLeastSpread = 0.15;  // m; with 0.07 the real drive of the tests came to 6.5 instead of 4.9 cm
+  constexpr double kLeastSpread = 0.15;  // m
   constexpr double kMostSpread = 0.3;    // m
   constexpr double kPoseRotation = 0.1;  // rad
   const auto spread = [&](double pose, double noise) {

@@ -9,8 +9,7 @@ namespace pcl_floam {
 namespace {
 
 /// When a direction is lost from sight, its velocity is off by more than the registrations before tell: they were about
-/// to lose it. With 1 the errors of 15 starts along simulated tunnels came to a median of 2.3 standard deviations in
-/// the next 300 scans. In the other modes the velocity's covariance is a constant, and large enough.
+/// to lose it. In the other modes the velocity's covariance is a constant, and large enough.
 constexpr double kVelocityErrorsPerVariance = 6.0;
 
 }  // namespace

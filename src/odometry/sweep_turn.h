@@ -16,9 +16,7 @@ namespace pcl_floam {
 /// what that leaves open is least squares over six worlds (VLP-16, HDL-64; by hand, in rooms, on roads), of which any
 /// five give the same.
 ///
-/// The angular acceleration of the next sweep is measured from it: cities came to 0.028, 0.029 and 0.024 instead of
-/// 0.029, 0.032 and 0.029 % (seeds 21 to 23). Measured from SweepVelocity's turns, which are slightly more accurate, 21
-/// drives through cities came to 4.7 instead of 3.5 cm in the mean; their rates were the same.
+/// The angular acceleration of the next sweep is measured from it.
 class SweepTurn {
 public:
   /// All per period, in the present sensor's axes.

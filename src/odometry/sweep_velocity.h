@@ -16,8 +16,6 @@ namespace pcl_floam {
 ///
 /// The motion between two poses is known many times better than that during a sweep, but tells of the past: how far it
 /// holds is learned on the way. Poses are registered at the middle of the sweep; what is refined here leads to its end.
-/// In simulated rooms the poses there came to 0.17, 0.16 and 0.13 instead of 0.22, 0.21 and 0.19 cm, by hand to 0.34,
-/// 0.29 and 0.30 instead of 0.39, 0.33 and 0.32 (seeds 21 to 23).
 class SweepVelocity {
 public:
   /// \param twist per period, roughly known. Without this the first sweep is taken for it.
