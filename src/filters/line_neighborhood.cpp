@@ -11,7 +11,8 @@ namespace pcl_floam {
 namespace {
 
 /// Angle between neighbours, seen from the sensor, from which a line is sparse, rad: 0.43 degrees. Lidars have 0.1 to
-/// 0.4 unless they turn fast. Five neighbours of a sparse line reach around corners, and what lies along it says little.
+/// 0.4 unless they turn fast. Five neighbours of a sparse line reach around corners, and what lies along it says
+/// little.
 constexpr float kSparse = 0.0075F;
 /// So far, in rad, the neighbours of a sparse line reach on each side.
 constexpr float kReach = 0.05F;
