@@ -9,10 +9,9 @@
 namespace pcl_floam {
 
 /// A lorry that keeps beside the sensor fills a third of the view, has as many of the features, and says in each scan
-/// that it has not moved. Of features that are spread over the scene it has its share only. They tell less otherwise
-/// (cities with an HDL-64 come to 0.032, 0.037 and 0.027 instead of 0.025, 0.029 and 0.024 %), so they are registered
-/// beside all features now and then, and instead of them while the two disagree again and again. Cities with a lorry
-/// beside the sensor (HDL-64, seeds 21 to 23) come to 0.04, 0.06 and 0.05 % instead of 1.0, 0.9 and 1.6.
+/// that it has not moved. Of features that are spread over the scene it has its share only. They tell less
+/// otherwise, so they are registered beside all features now and then, and instead of them while the two disagree again
+/// and again.
 class Crowding {
 public:
   /// Whether the present scan should be compared; for each scan once. \return true for one in five; in three while

@@ -27,10 +27,8 @@
 
 namespace pcl_floam {
 
-/// A map of fewer keyframes is sparse, and may hold more of the traffic than of the world. Started in the middle of a
-/// column of cars at 25 m/s, a simulated drive of 1 km (highway, seed 22) came to 0.71 %, and to 0.105 with features
-/// that are spread until then. All the way they cost cities a tenth (0.033 instead of 0.030 %) and clear highways a
-/// third (0.077 instead of 0.059 %).
+/// A map of fewer keyframes is sparse, and may hold more of the traffic than of the world: until then features
+/// are spread. All the way that would cost accuracy.
 inline constexpr int kYoungMap = 60;
 
 /// Root mean square distance of the features: what a rotation error is multiplied with.
@@ -191,8 +189,7 @@ struct FeatureOdometry {
   /// apart
   bool findFirstMotion()
   {
-    // With scans missing between, the candidates of an ambiguous start lie too far apart: a VLP-16's start on a highway
-    // (seed 22) was taken for rest, and lost.
+    // With scans missing between, the candidates of an ambiguous start lie too far apart.
     constexpr double kTooLong = 1.5;
     const FirstScans scans{first, measured, std::max(motion.periodsSinceTracked(), 1e-3), motion.compensatedFraction(),
                            kReference};
@@ -205,8 +202,7 @@ struct FeatureOdometry {
     StartHypothesis start = startWith(found->twist, first_scan, parameters);
     if (!found->others.empty()) {
       starts = StartHypotheses(first_scan, start, found->others, parameters);
-      // There may be more traffic than world: a lorry beside the sensor drew a drive back by 6 m (highway with an
-      // HDL-32, seed 22; 0.1 m with features that are spread further).
+      // There may be more traffic than world, such as a lorry beside the sensor.
       scan_registration.suspectCrowding();  // from this scan on
     }
     correctPoses(start.poses);
@@ -258,8 +254,8 @@ struct FeatureOdometry {
     motion.update(report.registration, world_T_predicted, typicalRange(measured));
     report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, motion.pose());
     if (report.keyframe) {
-      // The map takes the sweep as it was registered: with its turn refined (SweepTurn), the real drive of the tests
-      // came to 6.1 instead of 4.9 cm.
+      // The map takes the sweep as it was registered, not with its turn refined (SweepTurn): the poses are those that
+      // fit the former.
       compensate(measured, motion.sweep(), undistorted, parameters.threads);
       report.milliseconds.compensation += watch.lap();
       forgetWhatHasGone(scan);

@@ -25,8 +25,7 @@ struct Candidate {
 
 /// Two scans a motion apart, and distorted by it: every landmark is needed, and none is good to millimetres.
 ///
-/// With the settings for the rest of the way, which hold edges for imprecise, the real drive of the tests, when its
-/// edges were left out or weighed less, was thought to start at 2.8 m/s instead of 13.
+/// The settings for the rest of the way hold edges for imprecise, and would miss the motion where they alone tell it.
 RegistrationParameters forTheStart(RegistrationParameters parameters)
 {
   parameters.edge_weight = std::max(0.5, parameters.edge_weight);
@@ -69,8 +68,7 @@ public:
 
 private:
   /// Which features of a scan are registered. What is found with spread ones, of which traffic has its share only,
-  /// must not end with the traffic after all: refined with all of them, a start with 30 % of the returns missing did
-  /// (highway, seed 22: 108 instead of 0.14 %).
+  /// must not end with the traffic after all.
   enum class Features : std::uint8_t { all, spread };
 
   /// Compensates and registers until the scans agree on the motion.

@@ -14,8 +14,7 @@ namespace pcl_floam {
 
 namespace {
 
-/// After so many scans with features it must be clear. Decided after 4 where one start fits twice as well as any other,
-/// 4 of 108 starts in motion were lost instead of 2.
+/// After so many scans with features it must be clear; decided much earlier, a false motion may still lead.
 constexpr std::size_t kScans = 8;
 /// So much smaller must a start's residuals be than those of the one that was found.
 constexpr double kClearly = 0.87;
@@ -26,8 +25,7 @@ constexpr std::size_t kMostScansInAll = 20;
 /// How badly the last few scans fitted, m.
 ///
 /// How many features find a surface says nothing: the map of a false motion is full of them, that of a sensor which
-/// stands has the same few rings again and again. Judged by that, 28 of 48 sensors that stood beside a simulated
-/// highway (VLP-16 and HDL-32, seeds 51 to 56) were set in motion.
+/// stands has the same few rings again and again.
 double updatedResidual(double residual, const RegistrationReport& registration)
 {
   constexpr double kMemory = 0.6;
@@ -169,7 +167,7 @@ std::optional<StartHypothesis> StartHypotheses::track(NextScan scan, const Odome
 /// after the first scan, or these eight scans would be the slow ones of every drive along a road.
 void StartHypotheses::dropOthers()
 {
-  constexpr double kHopelessAtFirst = 2.5;  // with 2, 5 of 108 starts in motion are lost instead of 2
+  constexpr double kHopelessAtFirst = 2.5;
   constexpr double kHopeless = 2.0;
   const StartHypothesis& found = starts_.front();
   const Vector6 twist = found.motion.twist();

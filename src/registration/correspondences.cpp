@@ -34,11 +34,8 @@ void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondenc
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
 constexpr double kNegligible = 0.02;
 
-/// In a sparse target features without a plane are tried with so many neighbours more. The greatest errors in height of
-/// the first four seconds, means of 20 starts (seeds 41 to 60), fell from 1.6 to 0.9 cm in tunnels, from 1.5 to 0.8 in
-/// corridors and from 1.9 to 1.7 by hand, and what is unknown along tunnels is called so as before
-/// (test_unobservable_direction.cpp). Seven more do as well. In maps that have grown this takes a sixth of the
-/// registration's time, for nothing.
+/// In a sparse target features without a plane are tried with so many neighbours more: the map of the first seconds has
+/// too few for its heights. In maps that have grown it would take time for nothing.
 constexpr int kSpareNeighbors = 3;
 
 /// Features of one kind, and how the map holds them.

@@ -38,7 +38,7 @@ double sumOfMinors(const Eigen::Matrix3d& m)
 
 /// The smallest eigenvalue of a covariance: Newton's steps from 0, where the characteristic polynomial is convex and
 /// falls, come near it from below; two or three do for points on a plane. With it and the trace, the other two follow
-/// from a square root: no trigonometry. The stage benchmark's 1000 plane fits take 0.20 instead of 0.23 ms.
+/// from a square root: no trigonometry.
 double smallestEigenvalue(const Eigen::Matrix3d& covariance, double minors)
 {
   constexpr int kMostSteps = 30;

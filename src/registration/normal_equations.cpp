@@ -25,18 +25,12 @@ constexpr double kFeatureScalePerMedian = 3.0 * 1.4826;
 /// Fewer residuals than this tell little of their own spread. Between a corridor's doors there may be two edges, one
 /// of them wrong by half a metre: by their median it would be right, and hold the pose. So the planes' spread is taken
 /// instead; but while the pose may be off by more, edges that say so must count, or the noise of the planes' normals
-/// would hold it. Six drives along corridors with 30 % of the returns missing (seeds 21 to 26), each with
-/// 997, 1000 and 1004 features at most, came to 46 cm in the mean if 8 edges were enough, to 11 with the planes'
-/// spread alone (34 on seed 23, which slipped by metres when it set off), and to 4.7 like this; to 7.2 if the
-/// iterations went on until the uncertainty were less than that spread. Far from the solution features are thinned, and
-/// those are counted that are left.
+/// would hold it. Far from the solution features are thinned, and those are counted that are left.
 constexpr std::size_t kEnoughForSpread = 40;
 
 /// Many edges may still be a lorry's, which agree with nothing and draw the pose along. So their scale is bounded as
-/// well, so many times as wide. Highways seen by 128 scan lines (seeds 21 to 23) came to 0.164, 0.249 and 0.211 %
-/// without a bound and to 0.085, 0.170 and 0.118 with this one; with 3 to 5 twelve highways of four sensors differ by
-/// 5 % in the mean. With 1 two of six corridors with returns missing came to 20 cm, and with 3 a smooth tunnel seen by
-/// 128 scan lines went 1 to 5 cm across instead of 0.3.
+/// well, so many times as wide: edges are found less precisely than planes, and a tighter bound would leave corridors
+/// without them.
 constexpr double kManyEdgesWidening = 3.5;
 
 /// The kernel's scale for residuals of one kind.
