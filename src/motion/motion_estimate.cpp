@@ -138,7 +138,7 @@ void MotionEstimate::learnFrom(const SE3& world_T_sensor)
   periods_ = 0.0;
 }
 
-/// Kalman's filter.
+/// Kalman's filter; the covariance in Joseph's form, which stays positive.
 void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance)
 {
   learnFrom(world_T_sensor);
@@ -147,14 +147,17 @@ void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covarianc
   error.tail<3>() = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
   const Block6 r = turned(pose_.rotation).transpose();
   const Square12 p = covariance_;
-  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + r * covariance * r.transpose();
+  const Block6 noise = r * covariance * r.transpose();
+  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise;
   const Eigen::Matrix<double, 12, 6> gain =
       innovation.ldlt().solve(Eigen::Matrix<double, 6, 12>(p.topRows<6>())).transpose();
   const Eigen::Matrix<double, 12, 1> change = gain * error;
   pose_ = SE3(nearestRotation(pose_.rotation * expSO3(change.segment<3>(3))),
               pose_.translation + pose_.rotation * Eigen::Vector3d(change.head<3>()));
   velocity_ += change.tail<6>();
-  covariance_ = p - gain * innovation * gain.transpose();
+  Square12 left = Square12::Identity();
+  left.leftCols<6>() -= gain;
+  covariance_ = left * p * left.transpose() + gain * noise * gain.transpose();
 }
 
 void MotionEstimate::update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance)

@@ -129,21 +129,11 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 {
   constexpr double kFar = 3.0;      // m
   constexpr double kTurned = 0.25;  // rad
-  constexpr int kRounds = 4;
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
   keyframe_ = guess;
-  SurfaceRegistration found;
-  found.report.target_T_source = guess;
-  double part = 1.0;
-  for (int round = 0; round < kRounds; ++round, part *= 0.5) {
-    found = registerFrom(sweep, found.report.target_T_source, part * kFar, part * kTurned);
-  }
-  motion_ = MotionEstimate(found.report.target_T_source);
-  if (found.report.hasConverged()) {
-    motion_.place(found.report.target_T_source, covarianceOf(part * kFar, part * kTurned));
-    found = registerSurfaces(problemFor(sweep));
-  }
+  settle(sweep, guess, kFar, kTurned);
+  const SurfaceRegistration found = registerSurfaces(problemFor(sweep));
   if (found.report.hasConverged()) {
     update(sweep, found);
   }
@@ -171,10 +161,9 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 /// Motion Estimation (Eq. 2).
 void Track::predict(const Sweep& sweep)
 {
-  constexpr double kLong = 3.5;   // periods: a car's motion is known for longer, a hand's is not
-  constexpr double kShort = 0.5;  // over less, a difference of velocities is no acceleration
+  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   velocity_before_ = motion_.velocity();
-  periods_between_ = sweep.periods > kLong || sweep.periods < kShort ? 0.0 : sweep.periods;
+  periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
   motion_.predict(sweep.periods);
   if (sweep.periods > kLong) {
     seekAllAround(sweep);
@@ -187,8 +176,6 @@ void Track::seekAllAround(const Sweep& sweep)
   constexpr int kTurns = 18;
   constexpr int kUntilKnown = 3;   // sweeps until the velocity is known again
   constexpr double kReach = 1.0;   // m
-  constexpr int kRounds = 3;       // to come to rest where it was found
-  constexpr double kNearer = 0.3;  // of the reach
   constexpr double kTurned = 0.4;  // rad
   SurfaceProblem as_predicted = problemFor(sweep);
   as_predicted.wants_evidence = true;
@@ -206,16 +193,23 @@ void Track::seekAllAround(const Sweep& sweep)
     }
   }
   if (is_elsewhere && best.report.hasConverged()) {
-    for (int round = 0; round < kRounds; ++round) {
-      const SurfaceRegistration nearer =
-          registerFrom(sweep, best.report.target_T_source, kNearer * kReach, kNearer * kTurned);
-      best = nearer.report.hasConverged() ? nearer : best;
-    }
-    motion_ = MotionEstimate();  // the velocity of that long ago tells nothing
-    periods_between_ = 0.0;
     sweeps_to_wait_ = kUntilKnown;
-    motion_.place(best.report.target_T_source, covarianceOf(0.1 * kReach, 0.1 * kTurned));
+    settle(sweep, best.report.target_T_source, kReach, kTurned);
   }
+}
+
+/// Places the sensor where a sweep fits, from a guess that is far off, looking less and less far. What was known of the
+/// velocity tells nothing there.
+void Track::settle(const Sweep& sweep, const SE3& guess, double far, double far_turn)
+{
+  constexpr int kRounds = 4;
+  SE3 place = guess;
+  for (int round = 0; round < kRounds; ++round, far *= 0.5, far_turn *= 0.5) {
+    place = registerFrom(sweep, place, far, far_turn).report.target_T_source;  // that failed: where it began
+  }
+  motion_ = MotionEstimate();
+  motion_.place(place, covarianceOf(far, far_turn));
+  periods_between_ = 0.0;
 }
 
 void Track::forgetAlong(const std::vector<WeakDirection>& directions, double periods)

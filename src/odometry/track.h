@@ -79,6 +79,7 @@ public:
 private:
   void predict(const Sweep& sweep);
   void seekAllAround(const Sweep& sweep);
+  void settle(const Sweep& sweep, const SE3& guess, double far, double far_turn);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
   SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;
   void judge(const SurfaceRegistration& registration);

@@ -1,6 +1,7 @@
 #include "registration/surface_registration.h"
 
 #include "map/laser_support.h"
+#include "registration/normal_equations.h"
 #include "registration/sweep_points.h"
 
 #include <Eigen/Cholesky>
@@ -41,75 +42,50 @@ using Square6 = Eigen::Matrix<double, 6, 6>;
 using Square12 = Eigen::Matrix<double, 12, 12>;
 using Column12 = Eigen::Matrix<double, 12, 1>;
 
-/// What noise of the planes' normals alone makes of the information: the sum of v A A^T, where A = (1, arm x) and v is
-/// the variance of a normal, weighted.
-struct NormalsNoise {
-  double sum = 0.0;
-  Eigen::Vector3d arms = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-
-  void add(double variance, const Eigen::Vector3d& arm)
-  {
-    sum += variance;
-    arms += variance * arm;
-    squares += variance * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
-  }
-  void add(const NormalsNoise& other)
-  {
-    sum += other.sum;
-    arms += other.arms;
-    squares += other.squares;
-  }
-  [[nodiscard]] Eigen::Matrix<double, 6, 6> information() const
-  {
-    Eigen::Matrix<double, 6, 6> n;
-    n << sum * Eigen::Matrix3d::Identity(), -skew(arms), skew(arms), squares;
-    return n;
-  }
-};
-
-/// H, b and what the report tells, of some of the residuals (Eq. 10 to 14). A perturbation of the velocity moves a
-/// point measured s periods after mid-sweep as one of the pose that is s times as great.
+/// H, b (Eq. 10 to 14) and what the report tells, of some of the residuals. The twist of the equations is the velocity.
 struct Sums {
-  Matrix6 information = Matrix6::Zero();
-  Matrix6 coupling = Matrix6::Zero();              // of pose and velocity
-  Matrix6 velocity_information = Matrix6::Zero();  // of the velocity
-  Vector6 gradient = Vector6::Zero();
-  Vector6 velocity_gradient = Vector6::Zero();
-  NormalsNoise noise;
-  double cost = 0.0;
+  NormalEquations equations;
   double squares = 0.0;
-  double weight = 0.0;
+  double robust_weight = 0.0;
   double evidence = 0.0;
-  double total = 0.0;           // of the residuals' weights, 1/m^2
-  double squared_extent = 0.0;  // of the points from the sensor, weighted likewise
   int planes = 0, lines = 0, points = 0, fits = 0;
 
   [[nodiscard]] int count() const { return planes + lines + points; }
 
   void addEquations(const Matrix6& h, const Vector6& b, double since_middle)
   {
-    information += h;
-    coupling += since_middle * h;
-    velocity_information += since_middle * since_middle * h;
-    gradient += b;
-    velocity_gradient += since_middle * b;
+    equations.information += h;
+    equations.coupling += since_middle * h;
+    equations.twist_information += since_middle * since_middle * h;
+    equations.gradient += b;
+    equations.twist_gradient += since_middle * b;
+  }
+
+  /// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x).
+  void addNormalsNoise(double variance, const Eigen::Vector3d& arm)
+  {
+    Matrix6& noise = equations.noise_information;
+    noise.topLeftCorner<3, 3>().diagonal().array() += variance;
+    noise.topRightCorner<3, 3>() -= variance * skew(arm);
+    noise.bottomLeftCorner<3, 3>() += variance * skew(arm);
+    noise.bottomRightCorner<3, 3>() +=
+        variance * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
   }
 
   void add(const Sums& other)
   {
-    information += other.information;
-    coupling += other.coupling;
-    velocity_information += other.velocity_information;
-    gradient += other.gradient;
-    velocity_gradient += other.velocity_gradient;
-    noise.add(other.noise);
-    cost += other.cost;
+    equations.information += other.equations.information;
+    equations.noise_information += other.equations.noise_information;
+    equations.coupling += other.equations.coupling;
+    equations.twist_information += other.equations.twist_information;
+    equations.gradient += other.equations.gradient;
+    equations.twist_gradient += other.equations.twist_gradient;
+    equations.cost += other.equations.cost;
+    equations.weight += other.equations.weight;
+    equations.squared_extent += other.equations.squared_extent;
     squares += other.squares;
-    weight += other.weight;
+    robust_weight += other.robust_weight;
     evidence += other.evidence;
-    total += other.total;
-    squared_extent += other.squared_extent;
     planes += other.planes;
     lines += other.lines;
     points += other.points;
@@ -139,7 +115,7 @@ public:
   {
     SurfaceRegistration result;
     Sums sums = iterate(result.report);
-    if (problem_.looks_for_weak && result.report.hasConverged() && findWeakDirections(sums)) {
+    if (problem_.looks_for_weak && result.report.hasConverged() && findWeakDirections(sums.equations)) {
       pose_ = problem_.prior.pose;
       velocity_ = problem_.prior.velocity;
       sums = iterate(result.report);
@@ -203,7 +179,7 @@ private:
     velocity_.tail<3>() += back * step.segment<3>(9);
     pose_.translation += motion.head<3>();
     pose_.rotation = nearestRotation(expSO3(motion.tail<3>()) * pose_.rotation);
-    const Vector6 seen = sums.information * motion;
+    const Vector6 seen = sums.equations.information * motion;
     return motion.dot(seen) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
   }
 
@@ -218,9 +194,9 @@ private:
     report.plane_correspondences = sums.planes;
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
-    report.information = strong_.transpose() * sums.information * strong_;
-    report.cost = sums.cost;
-    report.residual_rms = sums.weight > 0.0 ? std::sqrt(sums.squares / sums.weight) : 0.0;
+    report.information = strong_.transpose() * sums.equations.information * strong_;
+    report.cost = sums.equations.cost;
+    report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
     report.covariance = result.posterior.topLeftCorner<6, 6>();
     result.velocity = velocity_;
@@ -243,20 +219,22 @@ private:
   [[nodiscard]] bool isLocked(int i) const { return problem_.locked[static_cast<std::size_t>(i % 6)]; }
 
   /// Those along which no more is told than noise of the planes' normals would, so that it follows the sensor wherever
-  /// it goes. Rotations are scaled to metres. Along them the pose is left to the prior (solution remapping after Zhang
-  /// and Singh, 2016).
-  bool findWeakDirections(const Sums& sums)
+  /// it goes. Along them the pose is left to the prior (solution remapping after Zhang and Singh, 2016). They are
+  /// eigenvectors of H itself, unlike InformationAnalysis's: without them H says exactly nothing of what is not seen.
+  bool findWeakDirections(const NormalEquations& e)
   {
     constexpr double kNothing = 1e-6;  // of residuals that tell of the direction alone
-    if (!(sums.squared_extent > 0.0)) {
+    if (!(e.squared_extent > 0.0)) {
       return false;
     }
-    const double per_metre = std::sqrt(sums.total / sums.squared_extent);
+    const double per_metre = std::sqrt(e.weight / e.squared_extent);
     Vector6 scale;
     scale << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
-    const Square6 scaled = scale.asDiagonal() * sums.information * scale.asDiagonal() / sums.total;
-    const Square6 noise = scale.asDiagonal() * sums.noise.information() * scale.asDiagonal() / sums.total;
-    const Eigen::SelfAdjointEigenSolver<Square6> solver(scaled);
+    const auto scaled = [&](const Matrix6& m) {
+      return Square6(scale.asDiagonal() * m * scale.asDiagonal() / e.weight);
+    };
+    const Square6 noise = scaled(e.noise_information);
+    const Eigen::SelfAdjointEigenSolver<Square6> solver(scaled(e.information));
     Square6 strong = Square6::Identity();
     for (int i = 0; i < 6; ++i) {
       const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
@@ -357,7 +335,7 @@ private:
     sums.addEquations(w * row * row.transpose(), (w * r) * row, p.since_middle);
     // Three points go into the plane; its thickness is what noise leaves to the others.
     const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
-    sums.noise.add(w * noise / (plane.count * std::max(plane.extent, kNoExtent)), p.arm);
+    sums.addNormalsNoise(w * noise / (plane.count * std::max(plane.extent, kNoExtent)), p.arm);
     ++sums.planes;
   }
 
@@ -396,11 +374,11 @@ private:
     const double width = kKernelWidth * kKernelWidth * (variance + doubt);
     const double ratio = width / (width + squared);
     const double robust = ratio * ratio;
-    sums.cost += 0.5 * robust * squared / variance;
+    sums.equations.cost += 0.5 * robust * squared / variance;
+    sums.equations.weight += robust / variance;
+    sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
     sums.squares += robust * squared;
-    sums.weight += robust;
-    sums.total += robust / variance;
-    sums.squared_extent += robust / variance * p.arm.squaredNorm();
+    sums.robust_weight += robust;
     sums.fits += squared < kFits * kFits * variance ? 1 : 0;
     if (weighs_evidence_) {
       const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
@@ -417,6 +395,7 @@ private:
   /// Of pose and velocity: what the residuals say, as so many independent ones, and what was known before.
   [[nodiscard]] Equations equationsOf(const Sums& sums) const
   {
+    const NormalEquations& e = sums.equations;
     const auto cleaned = [&](const Matrix6& m) { return Square6(strong_.transpose() * m * strong_); };
     Column12 off;
     off.head<3>() = pose_.translation - problem_.prior.pose.translation;
@@ -425,11 +404,11 @@ private:
     off.segment<3>(6) = pose_.rotation * faster.head<3>();
     off.segment<3>(9) = pose_.rotation * faster.tail<3>();
     Equations equations;
-    equations.information << cleaned(sums.information), cleaned(sums.coupling), cleaned(sums.coupling),
-        cleaned(sums.velocity_information);
+    equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
+        cleaned(e.twist_information);
     equations.information /= kResidualsBesideMotion;
     equations.information += prior_;
-    equations.gradient << strong_.transpose() * sums.gradient, strong_.transpose() * sums.velocity_gradient;
+    equations.gradient << strong_.transpose() * e.gradient, strong_.transpose() * e.twist_gradient;
     equations.gradient /= kResidualsBesideMotion;
     equations.gradient += prior_ * off;
     for (int i = 0; i < 12; ++i) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
+#include <cmath>
 #include <random>
 
 namespace pcl_floam {
@@ -106,6 +107,36 @@ TEST(MotionEstimate, CovarianceTurnsWithTheSensor)
   motion.correct(motion.pose(), only_x_unsure);
   EXPECT_GT(motion.poseCovariance()(0, 0), 0.01);
   EXPECT_LT(motion.poseCovariance()(1, 1), 1e-6);
+}
+
+TEST(MotionEstimate, TurnsAreExpectedToBeAsRestlessAsTheyWere)
+{
+  const auto spreadAfter = [](double restlessness) {
+    std::mt19937 random(8);
+    MotionEstimate motion;
+    for (int i = 0; i < 150; ++i) {
+      motion.predict(1.0);
+      motion.correct(exp(test::randomTwist(random, 1e-6, restlessness)), kExact * Matrix6(Matrix6::Identity()));
+    }
+    motion.predict(1.0);
+    return std::sqrt(motion.poseCovariance()(5, 5));
+  };
+  const double calm = spreadAfter(0.002);
+  EXPECT_NEAR(spreadAfter(0.02) / calm, 10.0, 0.5);
+  EXPECT_GT(calm, 0.001) << "no less than it was";
+}
+
+TEST(MotionEstimate, ForgetsTheMotionAlongADirectionAndNoOther)
+{
+  MotionEstimate motion = afterSteps(0.3 * Vector6(Vector6::Unit(0)), 10);
+  const Matrix6 before = motion.poseCovariance();
+  motion.forgetAlong(Eigen::Vector3d::UnitY(), 12.0);
+  const Matrix6 after = motion.poseCovariance();
+  EXPECT_GT(after(1, 1), 1.0);  // 12 periods at any velocity of a car's
+  EXPECT_NEAR(after(0, 0), before(0, 0), 1e-12);
+  EXPECT_NEAR(after(2, 2), before(2, 2), 1e-12);
+  motion.predict(1.0);
+  EXPECT_GT(motion.poseCovariance()(1, 1), after(1, 1)) << "nor is the velocity known";
 }
 
 TEST(MotionEstimate, CovariancesStayPositive)
