@@ -203,7 +203,7 @@ TEST_P(AmbiguousStarts, AreToldOf)
       EXPECT_EQ(report.corrected_poses.empty(), report.reason.empty()) << number;
     }
     EXPECT_TRUE(report.corrected_poses.empty() || number < kRefined) << number;
-    EXPECT_FALSE(report.provisional && number >= kSettled) << number;
+    EXPECT_FALSE(report.provisional && number >= (isByFeatures() ? kSettled : kRefined)) << number;
     was_provisional = was_provisional || report.provisional;
     if (scans.correctedBy() > kJump) {
       EXPECT_TRUE(was_provisional) << number;
