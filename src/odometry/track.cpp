@@ -133,7 +133,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   keeps_map_ = keeps_map;
   keyframe_ = guess;
   settle(sweep, guess, kFar, kTurned);
-  const SurfaceRegistration found = registerSurfaces(problemFor(sweep));
+  SurfaceRegistration found = registerSurfaces(problemFor(sweep));
   if (found.report.hasConverged()) {
     update(sweep, found);
   }
