@@ -9,6 +9,12 @@ namespace pcl_floam {
 /// The laser of a point that is compared with all there is, its own laser's curves included.
 inline constexpr std::uint32_t kNoLaser = 0xFFFFFFFFU;
 
+/// A laser as a bit; those of sensors with more than 64 share them.
+inline std::uint64_t laserBit(std::uint32_t laser)
+{
+  return laser == kNoLaser ? 0 : std::uint64_t{1} << (laser % 64U);
+}
+
 /// What one laser draws in one keyframe is a curve on its own cone, whatever it hits: a shape needs several curves. The
 /// curve that a laser drew last is where it draws now, if the sensor has hardly moved, and does not testify for it.
 class LaserSupport {
@@ -17,25 +23,21 @@ public:
   {
     if (keyframe != keyframe_) {
       older_ |= rotated(latest_, keyframe_);
-      older_curves_ = __builtin_popcountll(older_);
       latest_ = 0;
       keyframe_ = keyframe;
     }
-    latest_ |= bit(laser);
-    lasers_ |= bit(laser);
+    latest_ |= laserBit(laser);
   }
 
-  [[nodiscard]] int lasers() const { return __builtin_popcountll(lasers_); }
-
-  /// The curves, about and as far as two, without that of \p laser in the map's latest keyframe.
-  [[nodiscard]] int besides(std::uint32_t laser, std::uint32_t latest_keyframe) const
+  /// Whether there are two curves or more without that of \p laser in the map's latest keyframe.
+  [[nodiscard]] bool hasTwoBesides(std::uint32_t laser, std::uint32_t latest_keyframe) const
   {
-    const std::uint64_t others = keyframe_ == latest_keyframe ? latest_ & ~bit(laser) : latest_;
-    return older_curves_ + (older_curves_ < 2 ? __builtin_popcountll(others) : 0);
+    const std::uint64_t others = keyframe_ == latest_keyframe ? latest_ & ~laserBit(laser) : latest_;
+    return areTwo(older_) || areTwo(others) || (older_ != 0 && others != 0);
   }
 
 private:
-  static std::uint64_t bit(std::uint32_t laser) { return laser == kNoLaser ? 0 : std::uint64_t{1} << (laser % 64U); }
+  static bool areTwo(std::uint64_t bits) { return (bits & (bits - 1)) != 0; }
   /// Another keyframe's curves of the same lasers get bits of their own, mostly: 21 and 64 have no common divisor.
   static std::uint64_t rotated(std::uint64_t bits, std::uint32_t keyframe)
   {
@@ -43,11 +45,9 @@ private:
     return by == 0 ? bits : (bits << by) | (bits >> (64U - by));
   }
 
-  std::uint64_t lasers_ = 0;
   std::uint64_t older_ = 0;
   std::uint64_t latest_ = 0;
   std::uint32_t keyframe_ = 0;
-  int older_curves_ = 0;
 };
 
 }  // namespace pcl_floam

@@ -1,5 +1,7 @@
 #include "map/surface_fit.h"
 
+#include "map/laser_support.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -19,23 +21,10 @@ constexpr int kLasersOfLine = 3;
 /// The variance of what fills a cell evenly is its squared side over 12.
 constexpr double kEven = 12.0;
 
-}  // namespace
-
-void CellSums::add(double x, double y, double z)
+Eigen::Vector3d meanOf(const CellSums& s)
 {
-  sum[0] += x;
-  sum[1] += y;
-  sum[2] += z;
-  outer[0] += x * x;
-  outer[1] += x * y;
-  outer[2] += x * z;
-  outer[3] += y * y;
-  outer[4] += y * z;
-  outer[5] += z * z;
-  ++count;
+  return Eigen::Vector3d(s.sum[0], s.sum[1], s.sum[2]) / s.count;
 }
-
-namespace {
 
 Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
 {
@@ -51,37 +40,52 @@ std::array<float, 3> single(const Eigen::Vector3d& v)
 
 }  // namespace
 
-CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
+void CellSums::add(double x, double y, double z, std::uint32_t laser)
+{
+  sum[0] += x;
+  sum[1] += y;
+  sum[2] += z;
+  outer[0] += x * x;
+  outer[1] += x * y;
+  outer[2] += x * z;
+  outer[3] += y * y;
+  outer[4] += y * z;
+  outer[5] += z * z;
+  lasers |= laserBit(laser);
+  ++count;
+}
+
+Eigen::Matrix3d CellSums::filled(double side) const
+{
+  return kEven / (side * side) * covarianceOf(*this, meanOf(*this));
+}
+
+CellFit fitOf(const CellSums& sums, SurfaceShapes shapes)
 {
   CellFit fit;
-  if (sums.count == 0) {
-    return fit;
-  }
-  const Eigen::Vector3d mean = Eigen::Vector3d(sums.sum[0], sums.sum[1], sums.sum[2]) / sums.count;
-  const Eigen::Matrix3d covariance = covarianceOf(sums, mean);
-  const Eigen::Matrix3f filled = (kEven / (side * side) * covariance).cast<float>();
-  fit.filled = {filled(0, 0), filled(0, 1), filled(0, 2), filled(1, 1), filled(1, 2), filled(2, 2)};
-  const int lasers = sums.support.lasers();
+  const int lasers = __builtin_popcountll(sums.lasers);
   const bool edges = shapes == SurfaceShapes::lines;
   if (sums.count < (edges ? kLeastEdges : kLeastCount) || lasers < kLasersOfPlane) {
     return fit;
   }
+  const Eigen::Vector3d mean = meanOf(sums);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.computeDirect(covariance);
+  eigen.computeDirect(covarianceOf(sums, mean));
   const Eigen::Vector3d variance = eigen.eigenvalues().cwiseMax(0.0);  // rising
-  fit.mean = single(mean);
+  CellShape& shape = fit.shape;
+  shape.mean = single(mean);
   if (variance[1] < kFlat * variance[2]) {
     fit.kind = lasers < kLasersOfLine ? SurfaceKind::unknown : SurfaceKind::line;
-    fit.direction = single(eigen.eigenvectors().col(2));
-    fit.thickness = static_cast<float>(variance[1]);
-    fit.extent = static_cast<float>(variance[2]);
+    shape.direction = single(eigen.eigenvectors().col(2));
+    shape.thickness = static_cast<float>(variance[1]);
+    shape.extent = static_cast<float>(variance[2]);
   } else if (edges) {
     fit.kind = SurfaceKind::unknown;
   } else if (variance[0] < kFlat * variance[1]) {
     fit.kind = SurfaceKind::plane;
-    fit.direction = single(eigen.eigenvectors().col(0));
-    fit.thickness = static_cast<float>(variance[0]);
-    fit.extent = static_cast<float>(variance[1]);
+    shape.direction = single(eigen.eigenvectors().col(0));
+    shape.thickness = static_cast<float>(variance[0]);
+    shape.extent = static_cast<float>(variance[1]);
   } else {
     fit.kind = SurfaceKind::point;
     Eigen::Map<Eigen::Matrix3f>(fit.axes.data()) = eigen.eigenvectors().cast<float>();

@@ -2,14 +2,11 @@
 /// The shape of a cell's points from their running sums.
 #pragma once
 
-#include "map/laser_support.h"
-
 #include <pcl_floam/map/surface.h>
 
 #include <Eigen/Core>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 
 namespace pcl_floam {
@@ -24,43 +21,30 @@ enum class SurfaceShapes : std::uint8_t {
 struct CellSums {
   std::array<double, 3> sum{};
   std::array<double, 6> outer{};  // xx xy xz yy yz zz
-  LaserSupport support;
+  std::uint64_t lasers = 0;       // bits
   std::uint32_t count = 0;
 
-  void add(double x, double y, double z);
+  void add(double x, double y, double z, std::uint32_t laser);
+
+  /// Covariance over that of points that fill a cell of \p side evenly.
+  [[nodiscard]] Eigen::Matrix3d filled(double side) const;
 };
 
-/// What the sums tell. Offsets are from the sums' origin.
-struct CellFit {
-  SurfaceKind kind = SurfaceKind::unknown;
+/// A plane or a line: what the sums tell of it. The mean is from the sums' origin.
+struct CellShape {
   std::array<float, 3> mean{};
   std::array<float, 3> direction{};
-  std::array<float, 9> axes{};    ///< of a point's cell: its principal directions, one after the other
-  std::array<float, 6> filled{};  ///< xx xy xz yy yz zz: covariance over that of points that fill the cell evenly
   float thickness = 0.0F;
   float extent = 0.0F;
 };
 
-/// A shape that chance or the sampling pattern of a single laser would give is none.
-/// \param side m, of the cell
-[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side);
-
-/// A fit that is worked out when it is first asked for, by whichever thread asks.
-struct CachedFit {
-  enum State : std::uint8_t { stale, being_made, ready };
-
-  CellFit fit;
-  std::atomic<std::uint8_t> state{stale};
-
-  CachedFit() = default;
-  ~CachedFit() = default;
-  CachedFit(const CachedFit& other) : fit(other.fit), state(other.state.load()) {}
-  CachedFit& operator=(const CachedFit& other)
-  {
-    fit = other.fit;
-    state.store(other.state.load());
-    return *this;
-  }
+struct CellFit {
+  SurfaceKind kind = SurfaceKind::unknown;
+  CellShape shape;
+  std::array<float, 9> axes{};  ///< of what is neither plane nor line: its principal directions, one after the other
 };
+
+/// A shape that chance or the sampling pattern of a single laser would give is none.
+[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes);
 
 }  // namespace pcl_floam

@@ -1,5 +1,7 @@
 #include "map/voxel_pyramid.h"
 
+#include "common/prefetch.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,264 +9,321 @@ namespace pcl_floam {
 
 namespace {
 
-/// Which of a cell's eight children holds an offset from its centre.
-unsigned octant(const Eigen::Vector3d& offset)
+/// Which of its parent's eight children a cell is.
+unsigned octantOf(const VoxelKey& key)
 {
-  return (offset.x() >= 0.0 ? 1U : 0U) | (offset.y() >= 0.0 ? 2U : 0U) | (offset.z() >= 0.0 ? 4U : 0U);
+  return static_cast<unsigned>(key.x & 1) | static_cast<unsigned>(key.y & 1) << 1U |
+         static_cast<unsigned>(key.z & 1) << 2U;
+}
+
+/// Which of a cell's eight children holds an offset from its centre.
+unsigned octantOf(const Eigen::Vector3f& offset)
+{
+  return (offset.x() >= 0.0F ? 1U : 0U) | (offset.y() >= 0.0F ? 2U : 0U) | (offset.z() >= 0.0F ? 4U : 0U);
 }
 
 /// From a cell's centre to that of its child, in halves of the child's side.
-Eigen::Vector3d towards(unsigned octant)
+Eigen::Vector3f towards(unsigned octant)
 {
-  return {(octant & 1U) != 0U ? 1.0 : -1.0, (octant & 2U) != 0U ? 1.0 : -1.0, (octant & 4U) != 0U ? 1.0 : -1.0};
+  return {(octant & 1U) != 0U ? 1.0F : -1.0F, (octant & 2U) != 0U ? 1.0F : -1.0F, (octant & 4U) != 0U ? 1.0F : -1.0F};
+}
+
+VoxelKey childOf(const VoxelKey& key, unsigned octant)
+{
+  const auto half = [octant](std::int32_t v, unsigned bit) {
+    return 2 * v + static_cast<std::int32_t>((octant >> bit) & 1U);
+  };
+  return {half(key.x, 0), half(key.y, 1), half(key.z, 2)};
+}
+
+Eigen::Vector3d middleOf(const VoxelKey& key)
+{
+  return {key.x + 0.5, key.y + 0.5, key.z + 0.5};
 }
 
 }  // namespace
 
 VoxelPyramid::VoxelPyramid(double side, SurfaceShapes shapes)
-    : side_(side), squared_spacing_(side * side / kPointsPerLeaf), shapes_(shapes)
+    : side_(side), inverse_side_(1.0 / side), squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf)), shapes_(shapes)
 {
 }
 
-Eigen::Vector3d VoxelPyramid::centerOf(const VoxelKey& key) const
+bool VoxelPyramid::isInReach(const Eigen::Vector3d& point) const
 {
-  return sideOf(kLevels - 1) * Eigen::Vector3d(key.x + 0.5, key.y + 0.5, key.z + 0.5);
+  constexpr double kFarthest = 1 << 30;  // sides, as integers hold them
+  return point.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() * inverse_side_ < kFarthest;
+}
+
+Eigen::Vector3d VoxelPyramid::centerOfBlock(const VoxelKey& block) const
+{
+  return sideOf(kLevels - 1) * middleOf(block);
 }
 
 VoxelPyramid::Place VoxelPyramid::placeOf(const Eigen::Vector3d& point) const
 {
-  const VoxelKey key = keyOf(point, 1.0 / sideOf(kLevels - 1));
-  return {key, point - centerOf(key)};
+  const VoxelKey key = keyOf(point, inverse_side_);
+  return {key, point - centerOfBlock(key.above(kLevels - 1))};
 }
 
-VoxelPyramid::Path VoxelPyramid::makePathTo(const Place& place)
+/// From that of the block.
+Eigen::Vector3f VoxelPyramid::centerOf(const Place& place, int level) const
 {
-  Path path;
-  const std::uint64_t key = place.key.packed();
-  path.cell[kLevels - 1] = table_.find(key);
-  if (path.cell[kLevels - 1] == 0) {
-    path.cell[kLevels - 1] = cells_.take();
-    table_.insert(key, path.cell[kLevels - 1]);
-    blocks_.push_back({place.key, path.cell[kLevels - 1]});
-  }
-  Eigen::Vector3d offset = place.offset;
-  for (std::size_t level = kLevels - 1; level > 0; --level) {
-    const unsigned child = octant(offset);
-    offset -= 0.5 * sideOf(static_cast<int>(level) - 1) * towards(child);
-    std::uint32_t next = cells_[path.cell[level]].child[child];
-    if (next == 0) {
-      next = cells_.take();
-      cells_[path.cell[level]].child[child] = next;
+  constexpr int kAcross = 1 << (kLevels - 1);  // finest cells
+  const auto within = [&](std::int32_t v) { return ((v & (kAcross - 1)) >> level) + 0.5; };
+  const Eigen::Vector3d cells(within(place.key.x), within(place.key.y), within(place.key.z));
+  return (sideOf(level) * cells - Eigen::Vector3d::Constant(0.5 * sideOf(kLevels - 1))).cast<float>();
+}
+
+VoxelPyramid::Found VoxelPyramid::finestAt(const VoxelKey& key) const
+{
+  Found found;
+  for (; found.level < kLevels; ++found.level) {
+    found.cell = table_.find(key.above(found.level).packed(found.level));
+    if (found.cell != 0) {
+      break;
     }
-    path.cell[level - 1] = next;
   }
-  std::uint32_t& leaf = cells_[path.cell[0]].child[0];
-  leaf = leaf == 0 ? leaves_.take() : leaf;
-  return path;
+  return found;
+}
+
+/// Made, with all above it, if it is not there.
+std::uint32_t VoxelPyramid::cellAt(const VoxelKey& finest, int level)
+{
+  const VoxelKey key = finest.above(level);
+  std::uint32_t cell = table_.find(key.packed(level));
+  if (cell != 0) {
+    return cell;
+  }
+  cell = cells_.take();
+  contents_.take();  // of the same number: both pools are asked alike
+  if (level == kLevels - 1) {
+    blocks_.push_back({key, cell});
+  } else {
+    const std::uint32_t parent = cellAt(finest, level + 1);
+    cells_[cell].parent = parent;
+    contents_[parent].child[octantOf(key)] = cell;
+  }
+  if (level == 0) {
+    contents_[cell].child[0] = leaves_.take();
+  }
+  table_.insert(key.packed(level), cell);
+  return cell;
 }
 
 bool VoxelPyramid::insert(const Eigen::Vector3d& point, std::uint32_t laser)
 {
-  if (!point.allFinite()) {
+  if (!isInReach(point)) {
     return false;
   }
   const Place place = placeOf(point);
-  const Path path = makePathTo(place);
-  Leaf& leaf = leaves_[cells_[path.cell[0]].child[0]];
-  Nearest nearest;
-  findNearest(leaf, place.offset, nearest);
-  if (leaf.count >= kPointsPerLeaf || nearest.squared < squared_spacing_) {
+  std::uint32_t cell = cellAt(place.key, 0);
+  if (cells_[cell].count >= kPointsPerLeaf) {
     return false;
   }
+  Leaf& leaf = leaves_[contents_[cell].child[0]];
   const Eigen::Vector3f p = place.offset.cast<float>();
-  leaf.point[leaf.count++] = {p.x(), p.y(), p.z(), laser};
+  Nearest nearest;
+  findNearest(leaf, p, nearest);
+  if (nearest.squared < squared_spacing_) {
+    return false;
+  }
+  leaf.x[leaf.count] = p.x();
+  leaf.y[leaf.count] = p.y();
+  leaf.z[leaf.count] = p.z();
+  ++leaf.count;
   ++points_;
-  for (const std::uint32_t cell : path.cell) {
-    cells_[cell].sums.add(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()));
-    cells_[cell].sums.support.add(laser, keyframe_);
-    cells_[cell].fit.state.store(CachedFit::stale, std::memory_order_relaxed);
+  for (; cell != 0; cell = cells_[cell].parent) {
+    contents_[cell].sums.add(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()), laser);
+    Cell& around = cells_[cell];
+    around.support.add(laser, keyframe_);
+    around.count = static_cast<std::uint16_t>(std::min<std::uint32_t>(contents_[cell].sums.count, UINT16_MAX));
+    around.state.store(kStale, std::memory_order_relaxed);
   }
   return true;
 }
 
-/// A thread that finds a fit in the making works it out for itself rather than wait, in \p own.
-const CellFit& VoxelPyramid::fitOf(const Cell& cell, int level, CellFit& own) const
+/// A thread that finds a fit in the making works it out for itself rather than wait.
+CellFit VoxelPyramid::fitOf(std::uint32_t number) const
 {
-  std::uint8_t state = cell.fit.state.load(std::memory_order_acquire);
-  if (state == CachedFit::ready) {
-    return cell.fit.fit;
+  const Cell& cell = cells_[number];
+  const CellContent& content = contents_[number];
+  std::uint8_t state = cell.state.load(std::memory_order_acquire);
+  if (state >= kKnown) {
+    const auto kind = static_cast<SurfaceKind>(state - kKnown);
+    return {kind, cell.shape, kind == SurfaceKind::point ? content.axes : std::array<float, 9>()};
   }
-  own = pcl_floam::fitOf(cell.sums, shapes_, sideOf(level));
-  if (state == CachedFit::stale && cell.fit.state.compare_exchange_strong(state, CachedFit::being_made)) {
-    cell.fit.fit = own;
-    cell.fit.state.store(CachedFit::ready, std::memory_order_release);
+  const CellFit own = pcl_floam::fitOf(content.sums, shapes_);
+  if (state == kStale && cell.state.compare_exchange_strong(state, kBeingMade)) {
+    cell.shape = own.shape;
+    content.axes = own.axes;
+    cell.state.store(static_cast<std::uint8_t>(kKnown + static_cast<std::uint8_t>(own.kind)),
+                     std::memory_order_release);
   }
   return own;
 }
 
-VoxelPyramid::Path VoxelPyramid::pathTo(const Place& place) const
+Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
 {
-  Path path;
-  path.cell[kLevels - 1] = table_.find(place.key.packed());
-  path.center[kLevels - 1].setZero();
-  for (std::size_t level = kLevels - 1; level > 0 && path.cell[level] != 0; --level) {
-    const unsigned child = octant(place.offset - path.center[level]);
-    path.center[level - 1] = path.center[level] + 0.5 * sideOf(static_cast<int>(level) - 1) * towards(child);
-    path.cell[level - 1] = cells_[path.cell[level]].child[child];
-  }
-  return path;
+  Surface surface;
+  find(&point, &laser, 1, &surface);
+  return surface;
 }
 
 /// A line of edge features is seen by three lasers; that is support enough.
-bool VoxelPyramid::isSupported(const Cell& cell, std::uint32_t laser) const
+void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
-  constexpr int kOthers = 2;
-  return shapes_ == SurfaceShapes::lines || cell.sums.support.besides(laser, keyframe_) >= kOthers;
-}
-
-Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
-{
-  if (!point.allFinite()) {
-    return {};
-  }
-  const Place place = placeOf(point);
-  const Path path = pathTo(place);
-  for (int level = 0; level < kLevels; ++level) {
-    const std::uint32_t number = path.cell[static_cast<std::size_t>(level)];
-    if (number == 0 || !isSupported(cells_[number], laser)) {
+  surface.kind = SurfaceKind::unknown;
+  for (; found.cell != 0; found.cell = cells_[found.cell].parent, ++found.level) {
+    const Cell& cell = cells_[found.cell];
+    if (shapes_ != SurfaceShapes::lines && !cell.support.hasTwoBesides(laser, keyframe_)) {
       continue;
     }
-    CellFit own;
-    const CellFit& fit = fitOf(cells_[number], level, own);
+    const CellFit fit = fitOf(found.cell);
     if (fit.kind != SurfaceKind::unknown) {
-      return surfaceIn(path, level, place, fit);
+      surfaceIn(found, place, fit, surface);
+      return;
     }
   }
-  return {};
 }
 
-Surface VoxelPyramid::surfaceIn(const Path& path, int level, const Place& place, const CellFit& fit) const
+void VoxelPyramid::surfaceIn(Found found, const Place& place, const CellFit& fit, Surface& surface) const
 {
-  const auto at = static_cast<std::size_t>(level);
-  Surface surface;
+  const CellShape& shape = fit.shape;
+  const Eigen::Vector3d block = centerOfBlock(place.block());
   surface.kind = fit.kind;
-  surface.count = cells_[path.cell[at]].sums.count;
-  surface.size = sideOf(level);
-  surface.center = centerOf(place.key) + Eigen::Vector3f(fit.mean.data()).cast<double>();
-  surface.direction = Eigen::Vector3f(fit.direction.data()).cast<double>();
-  surface.thickness = static_cast<double>(fit.thickness);
-  surface.extent = static_cast<double>(fit.extent);
+  surface.count = cells_[found.cell].count;
+  surface.size = sideOf(found.level);
   if (fit.kind == SurfaceKind::point) {
     Nearest nearest;
-    findNearest(path.cell[at], level, path.center[at], place.offset, nearest);
-    surface.center = centerOf(place.key) + nearest.place;
-    surface.thickness = squared_spacing_;
-    surface.felt = feltIn(path, level, fit);
+    findNearest(found, centerOf(place, found.level), place.offset.cast<float>(), nearest);
+    surface.center = block + nearest.place.cast<double>();
+    surface.direction.setZero();
+    surface.thickness = static_cast<double>(squared_spacing_);
+    surface.extent = 0.0;
+    surface.felt = feltIn(found, fit);
+    return;
   }
-  return surface;
+  surface.center = block + Eigen::Vector3f(shape.mean.data()).cast<double>();
+  surface.direction = Eigen::Vector3f(shape.direction.data()).cast<double>();
+  surface.thickness = static_cast<double>(shape.thickness);
+  surface.extent = static_cast<double>(shape.extent);
 }
 
 /// Which displacements are felt among the points of a cell: what fills it evenly, or goes on in the next greater one as
 /// in this, tells nothing of the way along it.
-Eigen::Matrix3d VoxelPyramid::feltIn(const Path& path, int level, const CellFit& fit) const
+Eigen::Matrix3d VoxelPyramid::feltIn(Found found, const CellFit& fit) const
 {
   constexpr double kChance = 1.25;  // as few points vary by chance
   const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix3f>(fit.axes.data()).cast<double>();
-  const auto along = [&](const CellFit& cell) {
-    const auto& f = cell.filled;
-    Eigen::Matrix3f filled;
-    filled << f[0], f[1], f[2], f[1], f[3], f[4], f[2], f[4], f[5];
-    return Eigen::Vector3d((axes.transpose() * filled.cast<double>() * axes).diagonal());
+  const auto along = [&](std::uint32_t cell, int level) {
+    return Eigen::Vector3d((axes.transpose() * contents_[cell].sums.filled(sideOf(level)) * axes).diagonal());
   };
-  Eigen::Vector3d filled = along(fit);
-  if (level + 1 < kLevels) {
-    CellFit own;
-    filled = filled.cwiseMax(along(fitOf(cells_[path.cell[static_cast<std::size_t>(level) + 1]], level + 1, own)));
+  Eigen::Vector3d filled = along(found.cell, found.level);
+  const std::uint32_t parent = cells_[found.cell].parent;
+  if (parent != 0) {
+    filled = filled.cwiseMax(along(parent, found.level + 1));
   }
   const Eigen::Vector3d felt = (1.0 - kChance * filled.array()).max(0.0);
   return axes * felt.asDiagonal() * axes.transpose();
 }
 
 /// Nearest cells first; those that lie farther off than what was found are left out.
-void VoxelPyramid::findNearest(std::uint32_t cell, int level, const Eigen::Vector3d& center,
-                               const Eigen::Vector3d& offset, Nearest& nearest) const
+void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const Eigen::Vector3f& offset,
+                               Nearest& nearest) const
 {
-  const Eigen::Vector3d outside = ((offset - center).cwiseAbs().array() - 0.5 * sideOf(level)).max(0.0);
+  const float half = 0.5F * static_cast<float>(sideOf(found.level));
+  const Eigen::Vector3f outside = ((offset - center).cwiseAbs().array() - half).max(0.0F);
   if (outside.squaredNorm() >= nearest.squared) {
     return;
   }
-  if (level == 0) {
-    findNearest(leaves_[cells_[cell].child[0]], offset, nearest);
+  const std::array<std::uint32_t, 8>& children = contents_[found.cell].child;
+  if (found.level == 0) {
+    findNearest(leaves_[children[0]], offset, nearest);
     return;
   }
-  const unsigned first = octant(offset - center);
+  const unsigned first = octantOf(Eigen::Vector3f(offset - center));
   for (unsigned i = 0; i < 8; ++i) {
     const unsigned child = first ^ i;
-    const std::uint32_t number = cells_[cell].child[child];
-    if (number != 0) {
-      findNearest(number, level - 1, center + 0.5 * sideOf(level - 1) * towards(child), offset, nearest);
+    if (children[child] != 0) {
+      findNearest({children[child], found.level - 1}, center + 0.5F * half * towards(child), offset, nearest);
     }
   }
 }
 
-void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3d& offset, Nearest& nearest)
+void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
 {
-  for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    const Eigen::Vector3d p(leaf.point[i].x, leaf.point[i].y, leaf.point[i].z);
-    const double squared = (p - offset).squaredNorm();
-    if (squared < nearest.squared) {
-      nearest = {p, squared};
+  std::array<float, kPointsPerLeaf> squared;
+  for (std::size_t i = 0; i < kPointsPerLeaf; ++i) {
+    const float x = leaf.x[i] - offset.x();
+    const float y = leaf.y[i] - offset.y();
+    const float z = leaf.z[i] - offset.z();
+    squared[i] = x * x + y * y + z * z;
+  }
+  for (std::size_t i = 0; i < leaf.count; ++i) {
+    if (squared[i] < nearest.squared) {
+      nearest = {{leaf.x[i], leaf.y[i], leaf.z[i]}, squared[i]};
     }
   }
 }
 
+/// Some at a time, each step of all before the next step: the memory of one comes while another is looked at.
 void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
                         Surface* surfaces) const
 {
-  for (std::size_t i = 0; i < count; ++i) {
-    surfaces[i] = surfaceAt(places[i], lasers[i]);
+  constexpr std::size_t kAtOnce = 32;
+  std::array<Place, kAtOnce> place;
+  std::array<Found, kAtOnce> found;
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    const std::size_t n = std::min(kAtOnce, count - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (isInReach(places[begin + i])) {
+        place[i] = placeOf(places[begin + i]);
+        table_.expect(place[i].key.packed(0));
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      found[i] = isInReach(places[begin + i]) ? finestAt(place[i].key) : Found();
+      if (found[i].cell != 0) {
+        prefetch(&cells_[found[i].cell], sizeof(Cell));
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      surfaceAt(place[i], found[i], lasers[begin + i], surfaces[begin + i]);
+    }
   }
 }
 
-void VoxelPyramid::release(std::uint32_t number, int level)
+void VoxelPyramid::release(std::uint32_t number, const VoxelKey& key, int level)
 {
+  const std::array<std::uint32_t, 8>& children = contents_[number].child;
   if (level == 0) {
-    points_ -= leaves_[cells_[number].child[0]].count;
-    leaves_.release(cells_[number].child[0]);
+    points_ -= leaves_[children[0]].count;
+    leaves_.release(children[0]);
   } else {
-    for (const std::uint32_t child : cells_[number].child) {
-      if (child != 0) {
-        release(child, level - 1);
+    for (unsigned i = 0; i < 8; ++i) {
+      if (children[i] != 0) {
+        release(children[i], childOf(key, i), level - 1);
       }
     }
   }
+  table_.erase(key.packed(level));
   cells_.release(number);
+  contents_.release(number);
 }
 
 void VoxelPyramid::crop(const Eigen::Vector3d& center, double radius)
 {
-  std::size_t kept = 0;
-  for (const Block& block : blocks_) {
-    if ((centerOf(block.key) - center).norm() > radius) {
-      release(block.root, kLevels - 1);
-    } else {
-      blocks_[kept++] = block;
-    }
-  }
-  if (kept == blocks_.size()) {
-    return;
-  }
-  blocks_.resize(kept);
-  table_.clear();
-  for (const Block& block : blocks_) {
-    table_.insert(block.key.packed(), block.root);
-  }
+  const auto is_far = [&](const Block& block) { return (centerOfBlock(block.key) - center).norm() > radius; };
+  const auto far = std::stable_partition(blocks_.begin(), blocks_.end(), [&](const Block& b) { return !is_far(b); });
+  std::for_each(far, blocks_.end(), [&](const Block& block) { release(block.root, block.key, kLevels - 1); });
+  blocks_.erase(far, blocks_.end());
 }
 
 void VoxelPyramid::clear()
 {
   points_ = 0;
   cells_.clear();
+  contents_.clear();
   leaves_.clear();
   table_.clear();
   blocks_.clear();

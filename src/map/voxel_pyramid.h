@@ -2,9 +2,10 @@
 /// A pyramid of voxels with running sums: shapes at every scale, and which lasers saw them.
 #pragma once
 
-#include "map/block_table.h"
 #include "map/chunked_pool.h"
+#include "map/laser_support.h"
 #include "map/surface_fit.h"
+#include "map/voxel_table.h"
 
 #include <pcl_floam/map/surface.h>
 
@@ -16,15 +17,9 @@
 
 namespace pcl_floam {
 
-/// A return in the map: an offset from the centre of its block, and the laser that saw it.
-struct MapPoint {
-  float x = 0.0F, y = 0.0F, z = 0.0F;  // m
-  std::uint32_t laser = 0;
-};
-
-/// Cells of sides v, 2v, 4v, 8v and 16v. Those of the greatest side, the blocks, are found by a hash of 64 bits, all
-/// others from their parent: an octree of four steps in each block. Each cell keeps the sums of its points and which
-/// lasers they came from.
+/// Cells of sides v, 2v, 4v, 8v and 16v, found by a hash of 64 bits: one lookup for the finest one around a place, whose
+/// parents follow from it. Each keeps the sums of its points and which lasers they came from. What a lookup reads lies
+/// in one cache line, all else beside it.
 class VoxelPyramid : public SurfaceSearch {
 public:
   static constexpr int kLevels = 5;
@@ -56,56 +51,89 @@ public:
   void clear();
 
 private:
-  struct Cell {
-    std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
-    CellSums sums;
-    mutable CachedFit fit;
+  /// What a lookup reads of a cell. Its shape is worked out when it is first asked for, by whichever thread asks.
+  struct alignas(64) Cell {
+    LaserSupport support;
+    std::uint32_t parent = 0;  ///< 0: none, it is a block of the greatest side
+    std::uint16_t count = 0;   ///< of its points, as far as it goes
+    mutable std::atomic<std::uint8_t> state{kStale};
+    mutable CellShape shape;
+
+    Cell() = default;
+    ~Cell() = default;
+    Cell(const Cell& other) : Cell() { *this = other; }
+    Cell& operator=(const Cell& other)
+    {
+      support = other.support;
+      parent = other.parent;
+      count = other.count;
+      shape = other.shape;
+      state.store(other.state.load());
+      return *this;
+    }
   };
+  static_assert(sizeof(Cell) == 64, "of a cache line's size");
+  /// Of its shape; the kinds of surface follow.
+  enum State : std::uint8_t { kStale, kBeingMade, kKnown };
+
+  /// What else there is to it.
+  struct CellContent {
+    CellSums sums;
+    std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
+    mutable std::array<float, 9> axes{};
+  };
+  /// The points of a finest cell, from the centre of its block, m.
   struct Leaf {
-    std::array<MapPoint, kPointsPerLeaf> point;
+    std::array<float, kPointsPerLeaf> x{}, y{}, z{};
     std::uint32_t count = 0;
   };
   struct Block {
     VoxelKey key;
     std::uint32_t root = 0;
   };
+
+  /// A place by its finest cell, and from the centre of the block that holds it.
   struct Place {
     VoxelKey key;
-    Eigen::Vector3d offset;  // from the block's centre
-  };
+    Eigen::Vector3d offset;
 
-  /// The cells around a place, by level; 0 where there is none. Their centres from that of the block.
-  struct Path {
-    std::array<std::uint32_t, kLevels> cell{};
-    std::array<Eigen::Vector3d, kLevels> center;
+    [[nodiscard]] VoxelKey block() const { return key.above(kLevels - 1); }
+  };
+  /// A cell around a place.
+  struct Found {
+    std::uint32_t cell = 0;  ///< 0: none
+    int level = 0;
   };
   struct Nearest {
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    double squared = std::numeric_limits<double>::infinity();
+    Eigen::Vector3f place = Eigen::Vector3f::Zero();
+    float squared = std::numeric_limits<float>::infinity();
   };
 
+  [[nodiscard]] bool isInReach(const Eigen::Vector3d& point) const;
   [[nodiscard]] Place placeOf(const Eigen::Vector3d& point) const;
-  [[nodiscard]] Eigen::Vector3d centerOf(const VoxelKey& key) const;
-  [[nodiscard]] Path pathTo(const Place& place) const;
-  Path makePathTo(const Place& place);
-  const CellFit& fitOf(const Cell& cell, int level, CellFit& own) const;
-  [[nodiscard]] bool isSupported(const Cell& cell, std::uint32_t laser) const;
-  [[nodiscard]] Surface surfaceIn(const Path& path, int level, const Place& place, const CellFit& fit) const;
-  [[nodiscard]] Eigen::Matrix3d feltIn(const Path& path, int level, const CellFit& fit) const;
-  void findNearest(std::uint32_t cell, int level, const Eigen::Vector3d& center, const Eigen::Vector3d& offset,
-                   Nearest& nearest) const;
-  static void findNearest(const Leaf& leaf, const Eigen::Vector3d& offset, Nearest& nearest);
-  void release(std::uint32_t cell, int level);
+  [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
+  [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
+  [[nodiscard]] Found finestAt(const VoxelKey& key) const;
+  std::uint32_t cellAt(const VoxelKey& finest, int level);
+  CellFit fitOf(std::uint32_t cell) const;
+  void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
+  void surfaceIn(Found found, const Place& place, const CellFit& fit, Surface& surface) const;
+  [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const CellFit& fit) const;
+  void findNearest(Found cell, const Eigen::Vector3f& center, const Eigen::Vector3f& offset, Nearest& nearest) const;
+  static void findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest);
+  void release(std::uint32_t cell, const VoxelKey& key, int level);
   [[nodiscard]] double sideOf(int level) const { return side_ * (1 << level); }
 
   double side_;
-  double squared_spacing_;
+  double inverse_side_;
+  float squared_spacing_;
   SurfaceShapes shapes_;
   std::uint32_t keyframe_ = 0;
   std::size_t points_ = 0;
   ChunkedPool<Cell> cells_;
+  ChunkedPool<CellContent> contents_;  ///< by the cells' numbers
   ChunkedPool<Leaf> leaves_;
-  BlockTable table_;
+  VoxelTable table_;
   std::vector<Block> blocks_;
 };
 

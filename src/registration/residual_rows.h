@@ -1,0 +1,36 @@
+/// \file residual_rows.h
+/// Residuals side by side, so that their sums take straight lines through memory.
+#pragma once
+
+#include "registration/normal_equations.h"
+
+#include <array>
+#include <cstddef>
+
+namespace pcl_floam {
+
+/// Scalar residuals r = n^T (q - c), whose derivative by the pose is J = n^T [I, -[arm]x] (Eq. 11, 13, 14), and by the
+/// velocity J times the point's time since mid-sweep.
+class ResidualRows {
+public:
+  static constexpr std::size_t kRoom = 192;
+
+  void clear() { size_ = 0; }
+
+  /// \param arm from the local origin to the point
+  void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
+           double since_middle);
+
+  /// H, b and what couples pose and velocity in them (Eq. 10), bit-identical for every processor.
+  void addTo(NormalEquations& equations);
+
+private:
+  using Column = std::array<double, kRoom>;
+
+  std::size_t size_ = 0;
+  std::array<Column, 6> jacobian_;
+  Column residual_;
+  std::array<Column, 3> weight_;  ///< times the time since mid-sweep to the power of 0, 1, 2
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,181 @@
+#include "registration/surface_residuals.h"
+
+#include "map/laser_support.h"
+#include "registration/residual_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Standard deviation of a return's place, m.
+constexpr double kRangeNoise = 0.02;
+/// Width of the kernel in standard deviations (Geman and McClure): beyond it a residual hardly counts.
+constexpr double kKernelWidth = 2.0;
+
+constexpr std::size_t kPointsPerChunk = 64;
+static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
+
+/// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x).
+void addNormalsNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
+{
+  noise.topLeftCorner<3, 3>().diagonal().array() += variance;
+  noise.topRightCorner<3, 3>() -= variance * skew(arm);
+  noise.bottomLeftCorner<3, 3>() += variance * skew(arm);
+  noise.bottomRightCorner<3, 3>() +=
+      variance * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+}
+
+}  // namespace
+
+void SurfaceSums::add(const SurfaceSums& other)
+{
+  equations.information += other.equations.information;
+  equations.noise_information += other.equations.noise_information;
+  equations.coupling += other.equations.coupling;
+  equations.twist_information += other.equations.twist_information;
+  equations.gradient += other.equations.gradient;
+  equations.twist_gradient += other.equations.twist_gradient;
+  equations.cost += other.equations.cost;
+  equations.weight += other.equations.weight;
+  equations.squared_extent += other.equations.squared_extent;
+  squares += other.squares;
+  robust_weight += other.robust_weight;
+  evidence += other.evidence;
+  planes += other.planes;
+  lines += other.lines;
+  points += other.points;
+  fits += other.fits;
+}
+
+SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& term, std::size_t stride) const
+{
+  SurfaceSums sums;
+  if (term.points == nullptr || term.target == nullptr) {
+    return sums;
+  }
+  const std::size_t count = (term.points->size() + stride - 1) / stride;
+  std::vector<SurfaceSums> parts((count + kPointsPerChunk - 1) / kPointsPerChunk);
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
+    const auto c = static_cast<std::size_t>(part);
+    addChunk(term, c * kPointsPerChunk, std::min(count, (c + 1) * kPointsPerChunk), stride, parts[c]);
+  }
+  for (const SurfaceSums& part : parts) {
+    sums.add(part);
+  }
+  return sums;
+}
+
+void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std::size_t end, std::size_t stride,
+                                SurfaceSums& sums) const
+{
+  std::array<Eigen::Vector3d, kPointsPerChunk> places;
+  std::array<PlacedPoint, kPointsPerChunk> placed;
+  std::array<std::uint32_t, kPointsPerChunk> lasers{};
+  std::array<Surface, kPointsPerChunk> surfaces;
+  ResidualRows rows;
+  places.fill(Eigen::Vector3d::Zero());
+  const SE3& pose = sensor.pose();
+  for (std::size_t i = begin; i < end; ++i) {
+    const ScanPoint& point = (*term.points)[i * stride];
+    PlacedPoint& p = placed[i - begin];
+    p.arm = pose.rotation * sensor.undistorted(point);
+    p.place = places[i - begin] = pose.translation + p.arm;
+    p.since_middle = periods * MovingSensor::sinceMiddle(point);
+    // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
+    lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
+  }
+  term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
+  for (std::size_t i = 0; i < end - begin; ++i) {
+    switch (surfaces[i].kind) {
+      case SurfaceKind::plane: addPlane(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::line: addLine(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::point: addPoint(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::unknown: break;
+    }
+  }
+  rows.addTo(sums.equations);
+}
+
+/// Eq. 7, and Eq. 14 with the plane's normal.
+void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows,
+                                SurfaceSums& sums) const
+{
+  constexpr double kNoExtent = 1e-9;  // m^2
+  const Eigen::Vector3d from_center = p.place - plane.center;
+  const double r = plane.direction.dot(from_center);
+  const double along = std::max(0.0, from_center.squaredNorm() - r * r);
+  const double extent = std::max(plane.extent, kNoExtent);
+  const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + (1.0 + along / extent) / plane.count);
+  const double w = weight(r * r, variance, plane.direction, p, sums);
+  rows.add(plane.direction, p.arm, r, w, p.since_middle);
+  // Three points go into the plane; its thickness is what noise leaves to the others.
+  const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
+  addNormalsNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
+  ++sums.planes;
+}
+
+/// Eq. 5 and 13: the distance across the line, in two directions.
+void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const
+{
+  const Eigen::Vector3d from_center = p.place - line.center;
+  const Eigen::Vector3d across = from_center - line.direction * line.direction.dot(from_center);
+  const double length = across.norm();
+  const Eigen::Vector3d first =
+      length > 0.0 ? Eigen::Vector3d(across / length) : Eigen::Vector3d(line.direction.unitOrthogonal());
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, sums);
+  rows.add(first, p.arm, length, w, p.since_middle);
+  rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
+  ++sums.lines;
+}
+
+/// The distance to the nearest point, as far as it is felt: in three directions u of felt = sum d u u^T (LDL^T).
+void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
+{
+  constexpr double kNotFelt = 1e-6;
+  const Eigen::Vector3d r = p.place - near.center;
+  const double length = r.norm();
+  const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, sums);
+  ++sums.points;
+  Eigen::Matrix3d rest = near.felt;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double d = rest(i, i);
+    if (d > kNotFelt) {
+      const Eigen::Vector3d u = rest.col(i) / d;
+      rest -= d * u * u.transpose();
+      rows.add(u, p.arm, u.dot(r), d * w, p.since_middle);
+    }
+  }
+}
+
+/// The kernel is as wide as the residual may be off with the pose.
+double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction,
+                                const PlacedPoint& p, SurfaceSums& sums) const
+{
+  constexpr double kFits = 3.0;       // standard deviations
+  constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
+  Eigen::Matrix<double, 6, 1> row;
+  row << direction, p.arm.cross(direction);
+  const double width = kKernelWidth * kKernelWidth * (variance + row.dot(reach * row));
+  const double ratio = width / (width + squared);
+  const double robust = ratio * ratio;
+  sums.equations.cost += 0.5 * robust * squared / variance;
+  sums.equations.weight += robust / variance;
+  sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
+  sums.squares += robust * squared;
+  sums.robust_weight += robust;
+  sums.fits += squared < kFits * kFits * variance ? 1 : 0;
+  if (weighs_evidence) {
+    const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
+    sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density);
+  }
+  return robust / variance;
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,57 @@
+/// \file surface_residuals.h
+/// How far a sweep's points are from the surfaces of a map, summed up.
+#pragma once
+
+#include "registration/normal_equations.h"
+#include "registration/surface_registration.h"
+#include "registration/sweep_points.h"
+
+#include <cstddef>
+
+namespace pcl_floam {
+
+class ResidualRows;
+
+/// A point where the present estimate has it.
+struct PlacedPoint {
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
+  double since_middle = 0.0;                        ///< in periods: so much of a change of the velocity moves it, too
+};
+
+/// H, b (Eq. 10 to 14) and what the report tells, of some of the residuals. The twist of the equations is the velocity.
+struct SurfaceSums {
+  NormalEquations equations;
+  double squares = 0.0;
+  double robust_weight = 0.0;
+  double evidence = 0.0;
+  int planes = 0, lines = 0, points = 0, fits = 0;
+
+  [[nodiscard]] int count() const { return planes + lines + points; }
+
+  void add(const SurfaceSums& other);
+};
+
+/// The residuals at one estimate of pose and motion.
+struct SurfaceResiduals {
+  MovingSensor sensor;
+  Matrix6 reach = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
+  double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
+  bool weighs_evidence = false;     ///< else the sums have none
+  int threads = 1;
+
+  /// In fixed chunks, added in order: the same bits for every number of threads.
+  /// \param stride one point in so many
+  [[nodiscard]] SurfaceSums sumsOf(const SurfaceTerm& term, std::size_t stride) const;
+
+private:
+  void addChunk(const SurfaceTerm& term, std::size_t begin, std::size_t end, std::size_t stride,
+                SurfaceSums& sums) const;
+  void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const;
+  void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const;
+  void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
+  [[nodiscard]] double weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
+                              SurfaceSums& sums) const;
+};
+
+}  // namespace pcl_floam
