@@ -78,7 +78,7 @@ private:
         report.termination = Termination::too_few_correspondences;
       } else if (!step.allFinite()) {
         report.termination = Termination::degenerate;
-      } else if (take(step, sums) && narrow && all && i + 1 >= kFewestIterations) {
+      } else if (take(step, sums) && narrow && all) {
         report.termination = Termination::converged;
         break;
       }
