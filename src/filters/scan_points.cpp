@@ -8,21 +8,40 @@
 
 namespace pcl_floam {
 
+namespace {
+
+/// In a loop of its own, for which the type of the time field is found out once.
+void setTimes(const CloudView& cloud, const ScanTiming& timing, std::vector<ScanPoint>& points)
+{
+  if (timing.source == ScanTimingSource::time_field) {
+    withReader(cloud.time, [&](const auto& time_of) {
+      for (ScanPoint& point : points) {
+        point.time = timing.fractionOf(time_of(cloud.point(static_cast<std::size_t>(point.index))));
+      }
+    });
+  } else if (timing.valid()) {
+    for (ScanPoint& point : points) {
+      point.time = timing.at(cloud, static_cast<std::size_t>(point.index));
+    }
+  }
+}
+
+}  // namespace
+
 void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing, double min_range,
                    double max_range, std::vector<ScanPoint>& points)
 {
-  points.clear();
   const auto nearest = static_cast<float>(min_range * min_range);
   const auto farthest = static_cast<float>(max_range * max_range);
+  points.resize(lines.valid() ? lines.index.size() : cloud.size);
+  std::size_t taken = 0;
   const auto take = [&](std::size_t i, std::uint32_t laser) {
     const float x = cloud.x(i);
     const float y = cloud.y(i);
     const float z = cloud.z(i);
     const float squared = x * x + y * y + z * z;
-    if (squared >= nearest && squared <= farthest) {  // refuses NaN, too
-      const float time = timing.valid() ? timing.at(cloud, i) : 0.5F;
-      points.push_back({x, y, z, time, laser, static_cast<std::int32_t>(i)});
-    }
+    points[taken] = {x, y, z, 0.5F, laser, static_cast<std::int32_t>(i)};
+    taken += squared >= nearest && squared <= farthest ? 1 : 0;  // refuses NaN, too
   };
   if (lines.valid()) {
     for (std::size_t m = 0; m < lines.lines(); ++m) {
@@ -30,22 +49,26 @@ void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTim
         take(static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]), static_cast<std::uint32_t>(m));
       }
     }
-    return;
-  }
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (isMeasurable(cloud, i)) {
-      take(i, static_cast<std::uint32_t>(i));
+  } else {
+    for (std::size_t i = 0; i < cloud.size; ++i) {
+      if (isMeasurable(cloud, i)) {
+        take(i, static_cast<std::uint32_t>(i));
+      }
     }
   }
+  points.resize(taken);
+  setTimes(cloud, timing, points);
 }
 
 /// As large as the last sample asked for; smaller tables stay in the cache.
 void SpatialSampling::forget()
 {
   constexpr std::size_t kFewest = 1024;
+  constexpr unsigned kFewestShift = 64 - 10;
   std::size_t slots = kFewest;
-  while (slots < 4 * used_) {
-    slots *= 2;
+  shift_ = kFewestShift;
+  for (; slots < 4 * used_; slots *= 2) {
+    --shift_;
   }
   table_.assign(slots, 0);
   used_ = 0;
@@ -56,6 +79,7 @@ void SpatialSampling::grow()
 {
   std::vector<std::uint64_t> old(2 * table_.size(), 0);
   old.swap(table_);
+  --shift_;
   for (const std::uint64_t key : old) {
     if (key != 0) {
       table_[placeOf(key)] = key;
@@ -67,7 +91,7 @@ void SpatialSampling::grow()
 std::size_t SpatialSampling::placeOf(std::uint64_t key) const
 {
   constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
-  std::size_t i = static_cast<std::size_t>((key * kGolden) >> 32U) & (table_.size() - 1);
+  auto i = static_cast<std::size_t>((key * kGolden) >> shift_);
   while (table_[i] != 0 && table_[i] != key) {
     i = (i + 1) & (table_.size() - 1);
   }
@@ -76,9 +100,10 @@ std::size_t SpatialSampling::placeOf(std::uint64_t key) const
 
 bool SpatialSampling::isFirst(const ScanPoint& point, float inverse_side)
 {
-  constexpr std::int64_t kOffset = 1 << 20;
+  constexpr float kOffset = 1 << 20;  // makes all coordinates positive, of which the integer part is the floor
   const auto coordinate = [inverse_side](float v) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(v * inverse_side)) + kOffset) & 0x1FFFFFU;
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(static_cast<double>(v * inverse_side) + kOffset)) &
+           0x1FFFFFU;
   };
   const std::uint64_t key = (coordinate(point.x) << 42U | coordinate(point.y) << 21U | coordinate(point.z)) + 1;
   if (key == last_) {

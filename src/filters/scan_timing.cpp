@@ -164,8 +164,7 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
   double fraction = 1.0;
   switch (source) {
     case ScanTimingSource::time_field:
-      fraction = (cloud.time.read(cloud.point(i)) * seconds_per_unit - start) / duration;
-      break;
+      return fractionOf(cloud.time.read(cloud.point(i)));
     case ScanTimingSource::columns:
       fraction = static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1);
       break;
@@ -173,7 +172,7 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
     case ScanTimingSource::automatic:
     case ScanTimingSource::none: break;
   }
-  return std::isfinite(fraction) ? static_cast<float>(std::clamp(fraction, 0.0, 1.0)) : 1.0F;
+  return withinSweep(fraction);
 }
 
 ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,

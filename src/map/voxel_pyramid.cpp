@@ -36,6 +36,9 @@ VoxelKey childOf(const VoxelKey& key, unsigned octant)
   return {half(key.x, 0), half(key.y, 1), half(key.z, 2)};
 }
 
+/// Places that are looked up side by side.
+constexpr std::size_t kAtOnce = 32;
+
 Eigen::Vector3d middleOf(const VoxelKey& key)
 {
   return {key.x + 0.5, key.y + 0.5, key.z + 0.5};
@@ -48,21 +51,19 @@ VoxelPyramid::VoxelPyramid(double side, SurfaceShapes shapes)
 {
 }
 
-bool VoxelPyramid::isInReach(const Eigen::Vector3d& point) const
-{
-  constexpr double kFarthest = 1 << 30;  // sides, as integers hold them
-  return point.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() * inverse_side_ < kFarthest;
-}
-
 Eigen::Vector3d VoxelPyramid::centerOfBlock(const VoxelKey& block) const
 {
   return sideOf(kLevels - 1) * middleOf(block);
 }
 
-VoxelPyramid::Place VoxelPyramid::placeOf(const Eigen::Vector3d& point) const
+/// \return false where no map reaches
+bool VoxelPyramid::findPlace(const Eigen::Vector3d& point, Place& place) const
 {
-  const VoxelKey key = keyOf(point, inverse_side_);
-  return {key, point - centerOfBlock(key.above(kLevels - 1))};
+  if (!findKey(point, inverse_side_, place.key)) {
+    return false;
+  }
+  place.offset = point - centerOfBlock(place.block());
+  return true;
 }
 
 /// From that of the block.
@@ -86,20 +87,17 @@ VoxelPyramid::Found VoxelPyramid::finestAt(const VoxelKey& key) const
   return found;
 }
 
-/// Made, with all above it, if it is not there.
-std::uint32_t VoxelPyramid::cellAt(const VoxelKey& finest, int level)
+/// With all above it that are not there yet.
+std::uint32_t VoxelPyramid::makeCell(const VoxelKey& finest, int level)
 {
   const VoxelKey key = finest.above(level);
-  std::uint32_t cell = table_.find(key.packed(level));
-  if (cell != 0) {
-    return cell;
-  }
-  cell = cells_.take();
+  const std::uint32_t cell = cells_.take();
   contents_.take();  // of the same number: both pools are asked alike
   if (level == kLevels - 1) {
     blocks_.push_back({key, cell});
   } else {
-    const std::uint32_t parent = cellAt(finest, level + 1);
+    std::uint32_t parent = table_.find(finest.above(level + 1).packed(level + 1));
+    parent = parent == 0 ? makeCell(finest, level + 1) : parent;
     cells_[cell].parent = parent;
     contents_[parent].child[octantOf(key)] = cell;
   }
@@ -112,11 +110,35 @@ std::uint32_t VoxelPyramid::cellAt(const VoxelKey& finest, int level)
 
 bool VoxelPyramid::insert(const Eigen::Vector3d& point, std::uint32_t laser)
 {
-  if (!isInReach(point)) {
-    return false;
+  Place place;
+  return findPlace(point, place) && insert(place, table_.find(place.key.packed(0)), laser);
+}
+
+/// Some at a time, as in \ref find.
+void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count)
+{
+  std::array<Place, kAtOnce> place;
+  std::array<std::uint32_t, kAtOnce> laser{};
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    std::size_t n = 0;
+    for (std::size_t i = begin; i < std::min(count, begin + kAtOnce); ++i) {
+      if (findPlace(places[i], place[n])) {
+        table_.expect(place[n].key.packed(0));
+        laser[n++] = lasers[i];
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      insert(place[i], table_.find(place[i].key.packed(0)), laser[i]);
+    }
   }
-  const Place place = placeOf(point);
-  std::uint32_t cell = cellAt(place.key, 0);
+}
+
+/// \param cell the finest one there; 0: there is none yet
+bool VoxelPyramid::insert(const Place& place, std::uint32_t cell, std::uint32_t laser)
+{
+  if (cell == 0) {
+    cell = makeCell(place.key, 0);
+  }
   if (cells_[cell].count >= kPointsPerLeaf) {
     return false;
   }
@@ -253,7 +275,8 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
 void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
 {
   std::array<float, kPointsPerLeaf> squared;
-  for (std::size_t i = 0; i < kPointsPerLeaf; ++i) {
+  const std::size_t lanes = (leaf.count + 3U) & ~3U;  // whole registers
+  for (std::size_t i = 0; i < lanes; ++i) {
     const float x = leaf.x[i] - offset.x();
     const float y = leaf.y[i] - offset.y();
     const float z = leaf.z[i] - offset.z();
@@ -270,19 +293,19 @@ void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, 
 void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
                         Surface* surfaces) const
 {
-  constexpr std::size_t kAtOnce = 32;
   std::array<Place, kAtOnce> place;
+  std::array<bool, kAtOnce> is_there{};
   std::array<Found, kAtOnce> found;
   for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
     const std::size_t n = std::min(kAtOnce, count - begin);
     for (std::size_t i = 0; i < n; ++i) {
-      if (isInReach(places[begin + i])) {
-        place[i] = placeOf(places[begin + i]);
+      is_there[i] = findPlace(places[begin + i], place[i]);
+      if (is_there[i]) {
         table_.expect(place[i].key.packed(0));
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      found[i] = isInReach(places[begin + i]) ? finestAt(place[i].key) : Found();
+      found[i] = is_there[i] ? finestAt(place[i].key) : Found();
       if (found[i].cell != 0) {
         prefetch(&cells_[found[i].cell], sizeof(Cell));
       }

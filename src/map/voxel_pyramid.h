@@ -37,6 +37,7 @@ public:
 
   /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
   bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
+  void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count);
 
   [[nodiscard]] bool empty() const override { return points_ == 0; }
   void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
@@ -109,12 +110,12 @@ private:
     float squared = std::numeric_limits<float>::infinity();
   };
 
-  [[nodiscard]] bool isInReach(const Eigen::Vector3d& point) const;
-  [[nodiscard]] Place placeOf(const Eigen::Vector3d& point) const;
+  bool findPlace(const Eigen::Vector3d& point, Place& place) const;
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
   [[nodiscard]] Found finestAt(const VoxelKey& key) const;
-  std::uint32_t cellAt(const VoxelKey& finest, int level);
+  std::uint32_t makeCell(const VoxelKey& finest, int level);
+  bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
   CellFit fitOf(std::uint32_t cell) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
   void surfaceIn(Found found, const Place& place, const CellFit& fit, Surface& surface) const;

@@ -32,15 +32,19 @@ struct VoxelKey {
   }
 };
 
-/// The voxel of side 1/\p inverse_side that holds a place.
-inline VoxelKey keyOf(const Eigen::Vector3d& place, double inverse_side)
+/// The voxel of side 1/\p inverse_side that holds a place. \return false if there is none that integers can name
+inline bool findKey(const Eigen::Vector3d& place, double inverse_side, VoxelKey& key)
 {
-  const auto whole = [inverse_side](double v) {
-    const double scaled = v * inverse_side;
-    const auto towards_zero = static_cast<std::int32_t>(scaled);
-    return towards_zero - (scaled < static_cast<double>(towards_zero) ? 1 : 0);
-  };
-  return {whole(place.x()), whole(place.y()), whole(place.z())};
+  constexpr double kFarthest = 1 << 30;  // sides; makes all coordinates positive, of which the integer part is the floor
+  const Eigen::Vector3d scaled = (place * inverse_side).array() + kFarthest;
+  if (!(scaled.x() > 0.0 && scaled.y() > 0.0 && scaled.z() > 0.0 && scaled.x() < 2.0 * kFarthest - 1.0 &&
+        scaled.y() < 2.0 * kFarthest - 1.0 && scaled.z() < 2.0 * kFarthest - 1.0)) {
+    return false;  // what is not a number, too
+  }
+  constexpr std::int32_t kOrigin = 1 << 30;
+  key = {static_cast<std::int32_t>(scaled.x()) - kOrigin, static_cast<std::int32_t>(scaled.y()) - kOrigin,
+         static_cast<std::int32_t>(scaled.z()) - kOrigin};
+  return true;
 }
 
 /// Which number belongs to a packed key; 0 stands for none.

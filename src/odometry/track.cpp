@@ -50,10 +50,16 @@ Matrix12 oneMotion(double periods)
 
 void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
 {
-  map.beginKeyframe();
+  std::vector<Eigen::Vector3d> places;
+  std::vector<std::uint32_t> lasers;
+  places.reserve(points.size());
+  lasers.reserve(points.size());
   for (const ScanPoint& point : points) {
-    map.insert(sensor.at(point), point.laser);
+    places.push_back(sensor.at(point));
+    lasers.push_back(point.laser);
   }
+  map.beginKeyframe();
+  map.insert(places.data(), lasers.data(), places.size());
 }
 
 }  // namespace
@@ -72,8 +78,8 @@ void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
   edges.crop(pose.middle.translation, horizon);
 }
 
-SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
-                                 int rounds)
+SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
+                                      int rounds)
 {
   constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
   SurfaceRegistration found;
@@ -95,10 +101,19 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
     }
     first_T_second = found.report.target_T_source;
   }
-  map_.emplace(side_, settings_);
-  map_->insert(first, {SE3(), first.fraction / second.periods * log(first_T_second)});
   evidence_ = found.evidence / kResidualsPerIndependentOne;
-  update(second, found);
+  return found;
+}
+
+SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
+                                 int rounds)
+{
+  SurfaceRegistration found = findMotion(first, second, velocity, far, rounds);
+  if (found.report.hasConverged()) {
+    map_.emplace(side_, settings_);
+    map_->insert(first, {SE3(), first.fraction / second.periods * log(found.report.target_T_source)});
+    update(second, found);
+  }
   return found;
 }
 

@@ -52,10 +52,15 @@ public:
   /// \param side m, of the map's finest cells
   Track(const TrackSettings& settings, double side) : settings_(settings), side_(side) {}
 
-  /// Begins at the origin with the first two sweeps, which share one unknown motion: the first is undistorted with
-  /// today's estimate of it, and the second registered with what comes out, again and again, looking less and less far.
+  /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the second
+  /// registered with what comes out, again and again, looking less and less far. Tells the pose of the second and the
+  /// evidence for it; the track has not begun.
   /// \param velocity per period, to begin with
   /// \param far      m, that it may be off
+  SurfaceRegistration findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
+                                 int rounds);
+
+  /// Begins at the origin with the motion that the first two sweeps tell.
   SurfaceRegistration begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far, int rounds);
 
   /// Begins with sweeps whose poses are known, in the order of time.

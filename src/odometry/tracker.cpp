@@ -22,6 +22,9 @@ constexpr std::size_t kFirstSweeps = 12;
 /// young, and fall behind by more where a scene is clear.
 constexpr double kHopeless = 100.0;
 
+/// So many are followed.
+constexpr std::size_t kMostHypotheses = 4;
+
 /// The direction along which the position is known least.
 Eigen::Vector3d leastKnown(const Matrix6& information)
 {
@@ -114,30 +117,16 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   return outcome;
 }
 
-/// From rest, near and far; and along the direction that this leaves open.
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
-  constexpr double kNear = 0.5;      // m
-  constexpr double kFar = 2.0;       // m
-  constexpr double kFarthest = 4.0;  // m a period: 40 m/s at ten sweeps a second
-  constexpr int kNearRounds = 3;
-  constexpr int kFarRounds = 6;
+  constexpr double kOff = 0.25;  // m: what the likely motions may still be off
+  constexpr int kRounds = 2;
   Outcome outcome;
-  Track rest(settings_, side_);
-  outcome.registration = rest.begin(first_, sweep, Vector6::Zero(), kNear, kNearRounds);
-  suppose(sweep, Vector6::Zero(), kNear, kNearRounds);
-  suppose(sweep, Vector6::Zero(), kFar, kFarRounds);
-  if (!outcome.registration.report.hasConverged()) {
-    hypotheses_.clear();
-    return outcome;
+  for (const FirstMotion& motion : likelyMotions(sweep)) {
+    suppose(sweep, motion.velocity, kOff, kRounds, outcome);
   }
-  const Eigen::Vector3d open = leastKnown(outcome.registration.report.information);
-  for (int step = 1; step * kNear <= kFarthest * sweep.periods; ++step) {
-    for (const double sign : {1.0, -1.0}) {
-      Vector6 velocity = Vector6::Zero();
-      velocity.head<3>() = sign * step * kNear / sweep.periods * open;
-      suppose(sweep, velocity, kNear, kNearRounds);
-    }
+  if (!isTracking()) {
+    return outcome;
   }
   giveUpHopeless();
   kept_ = {first_, sweep};
@@ -147,12 +136,80 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   return outcome;
 }
 
+/// From rest, near and far, and along the direction that this leaves open. Each is looked at with few points, and the
+/// likeliest are told.
+std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
+{
+  constexpr double kNear = 0.5;      // m
+  constexpr double kFar = 2.0;       // m
+  constexpr double kFarthest = 4.0;  // m a period: 40 m/s at ten sweeps a second
+  constexpr int kFarRounds = 5;
+  const Sweep first = thinned(first_);
+  const Sweep second = thinned(sweep);
+  std::vector<FirstMotion> motions;
+  Matrix6 information;
+  const auto look = [&](const Vector6& velocity, double far, int rounds) {
+    Track track(settings_, side_);
+    const RegistrationReport found = track.findMotion(first, second, velocity, far, rounds).report;
+    information = found.information;
+    if (found.hasConverged()) {
+      motions.push_back({log(found.target_T_source) / second.periods, track.evidence()});
+    }
+  };
+  look(Vector6::Zero(), kFar, kFarRounds);
+  look(Vector6::Zero(), kNear, 1);
+  const Eigen::Vector3d open = leastKnown(information);
+  for (int step = 1; !motions.empty() && step * kNear <= kFarthest * sweep.periods; ++step) {
+    for (const double sign : {1.0, -1.0}) {
+      Vector6 velocity = Vector6::Zero();
+      velocity.head<3>() = sign * step * kNear / sweep.periods * open;
+      look(velocity, kNear, 1);
+    }
+  }
+  return likeliest(std::move(motions), kNear / sweep.periods);
+}
+
+/// The few whose evidence is best, no two of them nearer than \p same to each other.
+std::vector<Tracker::FirstMotion> Tracker::likeliest(std::vector<FirstMotion> motions, double same)
+{
+  std::stable_sort(motions.begin(), motions.end(),
+                   [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
+  std::vector<FirstMotion> likely;
+  for (const FirstMotion& motion : motions) {
+    const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const FirstMotion& other) {
+      return (motion.velocity - other.velocity).head<3>().norm() < same;
+    });
+    if (!is_known && likely.size() < kMostHypotheses) {
+      likely.push_back(motion);
+    }
+  }
+  return likely;
+}
+
+/// As many points as tell which motions are likely.
+Sweep Tracker::thinned(const Sweep& sweep)
+{
+  constexpr double kMapped = 0.6;      // sides of the map's finest cells, between points that enter it
+  constexpr double kRegistered = 3.0;  // between those that are registered
+  Sweep thin;
+  sampling_.sample(sweep.dense, kMapped * side_, thin.dense);
+  sampling_.sample(sweep.sample, kRegistered * side_, thin.sample);
+  sampling_.sample(sweep.edges, side_, thin.edges);
+  thin.periods = sweep.periods;
+  thin.fraction = sweep.fraction;
+  return thin;
+}
+
 /// Follows the motion that is found from a supposed one, unless it is known already.
-void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds)
+void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds, Outcome& outcome)
 {
   constexpr double kSame = 0.5;  // m
   Hypothesis hypothesis{Track(settings_, side_), {}, {}, false};
-  if (!hypothesis.track.begin(first_, sweep, velocity, far, rounds).report.hasConverged()) {
+  const SurfaceRegistration found = hypothesis.track.begin(first_, sweep, velocity, far, rounds);
+  if (hypotheses_.empty()) {
+    outcome.registration = found;
+  }
+  if (!found.report.hasConverged()) {
     return;
   }
   const Vector6 motion = hypothesis.track.motion().velocity();
@@ -204,13 +261,12 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 /// Those that match no more or have fallen behind, but for the best few.
 void Tracker::giveUpHopeless()
 {
-  constexpr std::size_t kMost = 4;
   const auto evidence = [](const Hypothesis& h) { return h.is_lost ? -HUGE_VAL : h.track.evidence(); };
   const auto less = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a) < evidence(b); };
   const double hopeless = evidence(*std::max_element(hypotheses_.begin(), hypotheses_.end(), less)) - kHopeless;
   while (hypotheses_.size() > 1) {
     const auto last = std::min_element(hypotheses_.begin(), hypotheses_.end(), less);
-    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMost) {
+    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMostHypotheses) {
       break;
     }
     hypotheses_.erase(last);

@@ -48,6 +48,10 @@ private:
     std::vector<WeakDirection> weak;  // of the last sweep
     bool is_lost = false;
   };
+  struct FirstMotion {
+    Vector6 velocity;
+    double evidence = 0.0;
+  };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
     SE3 guess;
@@ -59,7 +63,10 @@ private:
   Outcome begin(Sweep sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
   Outcome findFirstMotion(const Sweep& sweep);
-  void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds);
+  [[nodiscard]] std::vector<FirstMotion> likelyMotions(const Sweep& sweep);
+  [[nodiscard]] static std::vector<FirstMotion> likeliest(std::vector<FirstMotion> motions, double same);
+  [[nodiscard]] Sweep thinned(const Sweep& sweep);
+  void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
   void settle();

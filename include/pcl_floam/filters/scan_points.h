@@ -44,6 +44,7 @@ private:
   [[nodiscard]] std::size_t placeOf(std::uint64_t key) const;
 
   std::vector<std::uint64_t> table_;
+  unsigned shift_ = 0;  // leaves as many bits of a hash as number the table's slots
   std::size_t used_ = 0;
   std::uint64_t last_ = 0;
 };

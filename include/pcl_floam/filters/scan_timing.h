@@ -5,6 +5,8 @@
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -42,6 +44,18 @@ struct ScanTiming {
   /// Fraction of the sweep in [0,1] at which point \p i was measured: 0 = start, 1 = end. Where it is unknown (no
   /// source, a time that is not finite) it is 1, the instant to which points are compensated by default.
   [[nodiscard]] float at(const CloudView& cloud, std::size_t i) const;
+
+  /// The same for what stands in the time field, of source `time_field`.
+  [[nodiscard]] float fractionOf(double time) const
+  {
+    return withinSweep((time * seconds_per_unit - start) / duration);
+  }
+
+private:
+  static float withinSweep(double fraction)
+  {
+    return std::isfinite(fraction) ? static_cast<float>(std::clamp(fraction, 0.0, 1.0)) : 1.0F;
+  }
 };
 
 /// Finds out how the points' times can be told.
