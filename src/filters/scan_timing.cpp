@@ -163,8 +163,7 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
 {
   double fraction = 1.0;
   switch (source) {
-    case ScanTimingSource::time_field:
-      return fractionOf(cloud.time.read(cloud.point(i)));
+    case ScanTimingSource::time_field: return fractionOf(cloud.time.read(cloud.point(i)));
     case ScanTimingSource::columns:
       fraction = static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1);
       break;

@@ -17,9 +17,9 @@
 
 namespace pcl_floam {
 
-/// Cells of sides v, 2v, 4v, 8v and 16v, found by a hash of 64 bits: one lookup for the finest one around a place, whose
-/// parents follow from it. Each keeps the sums of its points and which lasers they came from. What a lookup reads lies
-/// in one cache line, all else beside it.
+/// Cells of sides v, 2v, 4v, 8v and 16v, found by a hash of 64 bits: one lookup for the finest one around a place,
+/// whose parents follow from it. Each keeps the sums of its points and which lasers they came from. What a lookup reads
+/// lies in one cache line, all else beside it.
 class VoxelPyramid : public SurfaceSearch {
 public:
   static constexpr int kLevels = 5;

@@ -52,11 +52,10 @@ public:
   /// \param side m, of the map's finest cells
   Track(const TrackSettings& settings, double side) : settings_(settings), side_(side) {}
 
-  /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the second
-  /// registered with what comes out, again and again, looking less and less far. Tells the pose of the second and the
-  /// evidence for it; the track has not begun.
-  /// \param velocity per period, to begin with
-  /// \param far      m, that it may be off
+  /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the
+  /// second registered with what comes out, again and again, looking less and less far. Tells the pose of the second
+  /// and the evidence for it; the track has not begun. \param velocity per period, to begin with \param far      m,
+  /// that it may be off
   SurfaceRegistration findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
                                  int rounds);
 

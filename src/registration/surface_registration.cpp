@@ -23,7 +23,7 @@ constexpr std::size_t kManyPoints = 800;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose.
-constexpr double kSmallStep = 0.1;
+constexpr double kSmallStep = 0.3;
 constexpr int kFewestIterations = 4;
 constexpr int kCoarseIterations = 2;
 
@@ -70,7 +70,8 @@ private:
     double look = kFirstLook;
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
-      const bool all = (narrow && i >= kCoarseIterations) || i >= kFewestIterations || problem_.scan.points->size() < kManyPoints;
+      const bool all =
+          (narrow && i >= kCoarseIterations) || i >= kFewestIterations || problem_.scan.points->size() < kManyPoints;
       sums = accumulate(look, all ? 1 : kFirstStride);
       report.iterations = i + 1;
       const Column12 step = sums.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);

@@ -103,8 +103,7 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
-void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows,
-                                SurfaceSums& sums) const
+void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const
 {
   constexpr double kNoExtent = 1e-9;  // m^2
   const Eigen::Vector3d from_center = p.place - plane.center;
@@ -155,8 +154,8 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
-double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction,
-                                const PlacedPoint& p, SurfaceSums& sums) const
+double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
+                                SurfaceSums& sums) const
 {
   constexpr double kFits = 3.0;       // standard deviations
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
