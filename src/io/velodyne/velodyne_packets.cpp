@@ -229,7 +229,8 @@ void VelodyneCloudBuilder::addHdl64(const VelodynePacket& packet, const Velodyne
   constexpr double kRadians = M_PI / (0.5 * kHundredths);
   for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
     const std::size_t first = packet.flag(block) == kLowerBlockFlag ? kReturns : 0;
-    const double fired = time + kFiringPeriod * static_cast<double>(block / kBlocksPerFiring);
+    const std::size_t firing = block / kBlocksPerFiring;
+    const double fired = time + kFiringPeriod * static_cast<double>(firing);
     for (std::size_t i = 0; i < kReturns && packet.azimuth(block) < kHundredths; ++i) {
       if (packet.distance(block, i) != 0) {
         const LaserCorrection& laser = calibration_->lasers[first + i];
