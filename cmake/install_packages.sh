@@ -4,7 +4,7 @@
 set -euo pipefail
 
 packages=(build-essential cmake ninja-build libpcl-dev libceres-dev libeigen3-dev libflann-dev liblz4-dev
-          libsqlite3-dev libpcap-dev libzstd-dev libbz2-dev libgtest-dev libbenchmark-dev
+          libsqlite3-dev libpcap-dev libzstd-dev libbz2-dev libtinyxml2-dev libyaml-cpp-dev libgtest-dev libbenchmark-dev
           libcli11-dev nlohmann-json3-dev libembree-dev gnuplot-nox python3 "$@")
 
 missing=()

@@ -22,5 +22,7 @@ pcl_floam_add_recording_library(ZSTD zstd zstd.h "recordings compressed with zst
 pcl_floam_add_recording_library(BZ2 bz2 bzlib.h "recordings compressed with bz2")
 pcl_floam_add_recording_library(SQLITE sqlite3 sqlite3.h "rosbag2's .db3 files")
 pcl_floam_add_recording_library(PCAP pcap pcap/pcap.h "captures of Velodyne packets")
+pcl_floam_add_recording_library(XML tinyxml2 tinyxml2.h "an HDL-64's calibrations in XML")
+pcl_floam_add_recording_library(YAML yaml-cpp yaml-cpp/yaml.h "an HDL-64's calibrations in YAML")
 # For what is linked with the library when that is static.
 set_property(TARGET pcl_floam_io PROPERTY PCL_FLOAM_RECORDING_LIBRARIES "${PCL_FLOAM_RECORDING_LIBRARIES}")

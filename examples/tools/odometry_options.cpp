@@ -61,6 +61,12 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
 void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Structure of a scan (found automatically)");
+  addChoice(
+      app, "--structure", o.parameters.structure,
+      {{"auto", ScanStructure::automatic}, {"scan-lines", ScanStructure::scan_lines}, {"space", ScanStructure::space}},
+      "work from scan lines, or from neighbourhoods in space as for\n"
+      "lidars that have none; auto: scan lines where they are found.\n"
+      "With scan-lines, a scan without them is not tracked");
   addChoice(app, "--scan-lines", o.parameters.scan_line_source,
             {{"auto", ScanLineSource::automatic},
              {"ring-field", ScanLineSource::ring_field},
@@ -111,9 +117,9 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
                  "One pose per scan of the folder, or TUM with times.txt")
       ->type_name("FILE");
   app.add_option("--calibration", o.calibration,
-                 "KITTI's calib.txt, when the true poses are the camera's,\nas in the KITTI odometry benchmark")
-      ->type_name("FILE")
-      ->needs("--ground-truth");
+                 "of a Velodyne HDL-64, to decode its packets: its db.xml or\nYAML. Or KITTI's calib.txt, "
+                 "when the true poses are the\ncamera's, as in the KITTI odometry benchmark")
+      ->type_name("FILE");
   addChoice(app, "--pose-instant", o.pose_instant,
             {{"auto", std::nullopt},
              {"start", PoseInstant::start},

@@ -20,7 +20,7 @@ struct OdometryOptions {
   std::string topic;  ///< of the scans in a recording; empty: there is but one
   std::filesystem::path output;
   std::filesystem::path ground_truth;  ///< empty: none
-  std::filesystem::path calibration;   ///< of the ground truth; empty: it is the lidar's
+  std::filesystem::path calibration;   ///< of an HDL-64, or of the ground truth; empty: neither
   std::size_t from = 0;
   std::size_t max_scans = 0;  ///< 0: all
   std::string sensor = "auto";

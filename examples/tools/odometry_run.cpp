@@ -48,6 +48,15 @@ public:
     return report;
   }
 
+  /// After the last scan.
+  void finish()
+  {
+    if (late_ > 1) {
+      progress_.message("times: those of " + std::to_string(late_ - 1) +
+                        " more scans are not after those of the scans before");
+    }
+  }
+
   /// Of the last scan.
   [[nodiscard]] std::optional<double> stamp() const { return stamp_; }
   [[nodiscard]] bool isReadable() const { return readable_; }
@@ -63,10 +72,19 @@ private:
     }
     stamp_ = scans_.stamp(scan);
     if (isRecording(scans_) && stamp_ && last_stamp_ && !(*stamp_ > *last_stamp_)) {
-      progress_.message(scans_.path(scan).string() + ": the time of " + scans_.name(scan) +
-                        " is not after that of the scan before");
+      tellTime(scan);
     }
     last_stamp_ = stamp_ ? stamp_ : last_stamp_;
+  }
+
+  /// Once: a clock that was set back may stay so.
+  void tellTime(std::size_t scan)
+  {
+    if (late_++ == 0) {
+      progress_.message(scans_.path(scan).string() + ": the time of " + scans_.name(scan) +
+                        " is not after that of the scan before: no motion is expected between them. Is the driver's "
+                        "clock right, and are the recordings in order?");
+    }
   }
 
   void tell(std::size_t scan, const OdometryReport& report)
@@ -105,6 +123,7 @@ private:
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
   bool readable_ = false;
+  std::size_t late_ = 0;  ///< scans whose time is not after the one before
   std::optional<double> stamp_;
   std::optional<double> last_stamp_;
 };
@@ -167,6 +186,7 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
     }
     progress.update(i + 1);
   }
+  tracker.finish();
   for (const StampedPose& pose : writer.written()) {
     result.poses.push_back(pose.world_T_sensor);
   }

@@ -30,12 +30,14 @@ constexpr const char* kFooter =
     "\nExamples:\n"
     "  pcl_floam_convert drive.mcap --output scans\n"
     "  pcl_floam_convert rosbag2_2024_05_01/ --topic /lidar/points --output scans\n"
+    "  pcl_floam_convert hdl64.pcap --calibration db.xml --output scans\n"
     "  pcl_floam_convert drive.mcap --list\n";
 
 struct ConvertOptions {
   std::filesystem::path scans;
   std::filesystem::path output;
   std::string topic;
+  std::filesystem::path calibration;  ///< of an HDL-64; empty: none
   bool list = false;
   bool quiet = false;
 };
@@ -46,6 +48,9 @@ void addConvertOptions(CLI::App& app, ConvertOptions& o)
   auto* output =
       app.add_option("-o,--output", o.output, "folder for the scans; created if need be")->type_name("FOLDER");
   app.add_option("--topic", o.topic, "topic of the scans, where there are several")->type_name("NAME");
+  app.add_option("--calibration", o.calibration,
+                 "of a Velodyne HDL-64, to decode its packets: its db.xml,\nor the YAML made of it")
+      ->type_name("FILE");
   app.add_flag("--list", o.list, "only list the topics")->excludes(output);
   app.add_flag("-q,--quiet", o.quiet, "no progress; problems are still told");
   app.set_help_flag("-h,--help", "this help");
@@ -143,7 +148,7 @@ private:
 
 int run(const ConvertOptions& options)
 {
-  const ScanSource scans(options.scans, options.topic);
+  const ScanSource scans(options.scans, ScanSourceOptions{options.topic, options.calibration});
   prepareFolder(options.output);
   noteInterruptions();
   const bool complete = Converter(scans, options).run();

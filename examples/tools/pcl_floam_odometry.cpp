@@ -62,15 +62,31 @@ void refuseToWriteAmong(const ScanSource& scans, const std::filesystem::path& ou
   }
 }
 
+/// `--calibration` is the lidar's, or that of the camera whose true poses are given: the file tells.
+bool calibratesLidar(const OdometryOptions& options)
+{
+  return !options.calibration.empty() && isLaserCalibration(options.calibration);
+}
+
+ScanSourceOptions sourceOptions(const OdometryOptions& options)
+{
+  const bool of_lidar = calibratesLidar(options);
+  if (!options.calibration.empty() && !of_lidar && options.ground_truth.empty()) {
+    throw FileError(options.calibration,
+                    "is no calibration of a Velodyne HDL-64 (XML or YAML), and KITTI's calib.txt needs --ground-truth");
+  }
+  return {options.topic, of_lidar ? options.calibration : std::filesystem::path()};
+}
+
 /// All that a run needs, checked before it begins.
 struct Preparation {
   Preparation(const OdometryOptions& options)
-      : scans(options.scans, options.topic),
+      : scans(options.scans, sourceOptions(options)),
         range(scanRange(options, scans.size())),
         odometry(parametersFor(options, scans.format()))
   {
     if (!options.ground_truth.empty()) {
-      truth.emplace(options.ground_truth, options.calibration, scans);
+      truth.emplace(options.ground_truth, calibratesLidar(options) ? "" : options.calibration, scans);
     }
     if (!options.map.empty()) {
       odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),

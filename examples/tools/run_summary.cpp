@@ -55,9 +55,21 @@ Json sigma(const Matrix6& covariance)
   return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
 }
 
+/// Why a scan was worked from scan lines, or from space.
+std::string structureReason(const OdometryReport& scan)
+{
+  if (scan.structure != ScanStructure::scan_lines) {
+    return scan.structure == ScanStructure::space ? toString(scan.scan_line_failure) : "no scan was read";
+  }
+  return formatted("%zu scan lines by %s, confidence %.2f", scan.scan_lines, toString(scan.scan_line_source),
+                   static_cast<double>(scan.scan_line_confidence));
+}
+
 Json structureJson(const OdometryReport& last)
 {
   return {{"engine", toString(last.engine)},
+          {"structure", toString(last.structure)},
+          {"structure_reason", structureReason(last)},
           {"scan_lines", last.scan_lines},
           {"scan_line_source", toString(last.scan_line_source)},
           {"scan_line_confidence", last.scan_line_confidence},
@@ -102,9 +114,8 @@ std::string describe(const RunSummary& summary)
       formatted("%-22s %zu of %zu, %zu tracked, %zu predicted, %zu unreadable", "scans", result.poses.size(),
                 summary.planned_scans, result.count(TrackingState::tracked) + result.count(TrackingState::initialized),
                 result.count(TrackingState::predicted), result.unreadable.size());
-  text += formatted("\n%-22s %s%s", "registered by", toString(last.engine),
-                    last.scan_lines == 0 ? ", since no scan lines were found" : "");
-  text += formatted("\n%-22s %zu by %s, times by %s", "scan lines", last.scan_lines, toString(last.scan_line_source),
+  text += formatted("\n%-22s %s", "registered by", toString(last.engine));
+  text += formatted("\n%-22s %s: %s; times by %s", "structure", toString(last.structure), structureReason(last).c_str(),
                     toString(last.timing_source));
   if (result.with_weak_directions > 0) {
     text += formatted("\n%-22s in %zu scans: hardly constrained, there the prediction was kept", "weak directions",

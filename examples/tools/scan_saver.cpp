@@ -23,7 +23,8 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
   }
   ScanLines lines;
   ScanTiming timing = findScanTiming(view, lines, parameters.timing_source);
-  if (!timing.valid() && parameters.timing_source != ScanTimingSource::none) {
+  if (!timing.valid() && parameters.timing_source != ScanTimingSource::none &&
+      parameters.structure != ScanStructure::space) {
     findScanLines(view, parameters.sensor, parameters.scan_line_source, lines);
     timing = findScanTiming(view, lines, parameters.timing_source);
   }

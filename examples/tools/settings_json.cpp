@@ -81,6 +81,7 @@ Json toJson(const OdometryParameters& p)
 {
   Json json = {{"engine", toString(p.engine)},
                {"sensor", p.sensor.name},
+               {"structure", toString(p.structure)},
                {"scan_lines", toString(p.scan_line_source)},
                {"timing", toString(p.timing_source)},
                {"rotation", nameOf(p.rotation)},

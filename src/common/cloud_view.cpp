@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -49,7 +51,10 @@ std::uint32_t coordinateOffset(const std::vector<pcl::PCLPointField>& fields, co
   for (const auto& field : fields) {
     if (field.name == name) {
       if (field.datatype != pcl::PCLPointField::FLOAT32) {
-        throw std::invalid_argument(std::string("field '") + name + "' of the cloud is not float32");
+        throw std::invalid_argument(std::string("field '") + name + "' of the cloud is not float32" +
+                                    (field.datatype == pcl::PCLPointField::FLOAT64
+                                         ? " but float64: makeCoordinatesFloat (cloud_view.h) turns it into that"
+                                         : ""));
       }
       return field.offset;
     }
@@ -110,6 +115,26 @@ void checkLayout(const pcl::PCLPointCloud2& cloud)
   }
 }
 
+void checkSize(const pcl::PCLPointCloud2& cloud)
+{
+  const std::size_t points = static_cast<std::size_t>(cloud.width) * cloud.height;
+  if (points > 0 && (cloud.point_step == 0 || cloud.data.size() / cloud.point_step < points)) {
+    throw std::invalid_argument("the cloud's data is shorter than width x height points");
+  }
+}
+
+/// A float64 as the float32 next to it, which takes the first half of its place.
+void narrow(std::uint8_t* bytes)
+{
+  double wide = 0.0;
+  std::memcpy(&wide, bytes, sizeof(wide));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr double kMost = std::numeric_limits<float>::max();
+  const float value = std::abs(wide) > kMost ? (wide > 0.0 ? kInfinity : -kInfinity) : static_cast<float>(wide);
+  std::memcpy(bytes, &value, sizeof(value));
+}
+
+constexpr std::array<std::string_view, 3> kCoordinateNames{"x", "y", "z"};
 constexpr std::array<std::string_view, 3> kRingNames{"ring", "line", "channel"};
 constexpr std::array<std::string_view, 6> kTimeNames{"time",       "t",           "timestamp",
                                                      "time_stamp", "offset_time", "relative_time"};
@@ -145,10 +170,33 @@ CloudView viewOf(const pcl::PCLPointCloud2& cloud)
   view.stride = cloud.point_step;
   view.width = cloud.width;
   view.height = cloud.height;
-  if (view.size > 0 && (view.stride == 0 || cloud.data.size() / view.stride < view.size)) {
-    throw std::invalid_argument("the cloud's data is shorter than width x height points");
-  }
+  checkSize(cloud);
   return view;
+}
+
+void makeCoordinatesFloat(pcl::PCLPointCloud2& cloud)
+{
+  std::vector<pcl::PCLPointField*> wide;
+  for (const std::string_view name : kCoordinateNames) {
+    const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
+                                    [name](const pcl::PCLPointField& candidate) { return candidate.name == name; });
+    if (field != cloud.fields.end() && field->datatype == pcl::PCLPointField::FLOAT64) {
+      checkWithinPoint(field->name.c_str(), field->offset, sizeof(double), cloud.point_step);
+      wide.push_back(&*field);
+    }
+  }
+  if (wide.empty()) {
+    return;
+  }
+  checkLayout(cloud);
+  checkSize(cloud);
+  const std::size_t points = static_cast<std::size_t>(cloud.width) * cloud.height;
+  for (pcl::PCLPointField* field : wide) {
+    for (std::size_t i = 0; i < points; ++i) {
+      narrow(cloud.data.data() + i * cloud.point_step + field->offset);
+    }
+    field->datatype = pcl::PCLPointField::FLOAT32;
+  }
 }
 
 }  // namespace pcl_floam

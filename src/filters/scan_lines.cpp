@@ -20,6 +20,16 @@ const char* toString(ScanLineSource source)
   return "unknown";
 }
 
+const char* toString(ScanStructure structure)
+{
+  switch (structure) {
+    case ScanStructure::automatic: return "automatic";
+    case ScanStructure::scan_lines: return "scan lines";
+    case ScanStructure::space: return "space";
+  }
+  return "unknown";
+}
+
 const char* toString(ScanLineFailure failure)
 {
   switch (failure) {
@@ -27,6 +37,7 @@ const char* toString(ScanLineFailure failure)
     case ScanLineFailure::empty_cloud: return "the cloud has no measurable point";
     case ScanLineFailure::source_not_available: return "the cloud lacks what the chosen source of scan lines needs";
     case ScanLineFailure::no_line_structure: return "no scan-line structure was found";
+    case ScanLineFailure::not_looked_for: return "scan lines were not looked for";
   }
   return "unknown";
 }

@@ -12,6 +12,12 @@
 
 namespace pcl_floam {
 
+/// What holds for all scans of a topic or sender: none of them can be read.
+class UnreadableKind : public FileError {
+public:
+  using FileError::FileError;
+};
+
 /// Where bytes come from, for the messages about them.
 struct Origin {
   std::filesystem::path file;
@@ -20,7 +26,18 @@ struct Origin {
 
   [[noreturn]] void fail(std::uint64_t offset, const std::string& reason) const
   {
-    throw FileError(file, part + "byte " + std::to_string(begin + offset) + ": " + reason);
+    throw FileError(file, at(offset) + reason);
+  }
+  /// \throws UnreadableKind
+  [[noreturn]] void refuseKind(std::uint64_t offset, const std::string& reason) const
+  {
+    throw UnreadableKind(file, at(offset) + reason);
+  }
+
+private:
+  [[nodiscard]] std::string at(std::uint64_t offset) const
+  {
+    return part + "byte " + std::to_string(begin + offset) + ": ";
   }
 };
 
@@ -62,6 +79,7 @@ public:
   void skip(std::uint64_t count) { (void)take(count); }
 
   [[noreturn]] void fail(const std::string& reason) const { origin_->fail(position_, reason); }
+  [[noreturn]] void refuseKind(const std::string& reason) const { origin_->refuseKind(position_, reason); }
 
 private:
   std::string_view bytes_;

@@ -24,8 +24,9 @@ std::optional<MessageEncoding> encodingOf(const std::string& name)
 /// The scans of one topic of several recordings.
 class MessageScans : public ScanReader {
 public:
-  MessageScans(Recordings recordings, ScanFormat format, const std::string& topic)
-      : recordings_(std::move(recordings)), format_(format), topic_(topic)
+  MessageScans(Recordings recordings, ScanFormat format, const std::string& topic,
+               std::shared_ptr<const VelodyneCalibration> calibration)
+      : recordings_(std::move(recordings)), format_(format), topic_(topic), calibration_(std::move(calibration))
   {
     for (const auto& recording : recordings_) {
       const std::vector<RecordedTopic>& topics = recording->topics();
@@ -59,7 +60,21 @@ public:
   void read(std::size_t i, pcl::PCLPointCloud2& cloud) override
   {
     MessageReader message = messageOf(i);
-    decoderOf(types_[last_].type).value()(message, cloud);
+    decoderOf(types_[last_].type).value()(message, calibration_.get(), cloud);
+  }
+
+  /// Looks at the first scan, for what makes all of them unreadable. A damage is told when the scan is asked for.
+  /// \throws UnreadableKind
+  void checkKind()
+  {
+    try {
+      pcl::PCLPointCloud2 cloud;
+      read(0, cloud);
+    } catch (const UnreadableKind&) {
+      throw;
+    } catch (const FileError&) {
+      return;
+    }
   }
 
 private:
@@ -99,8 +114,9 @@ private:
   Recordings recordings_;
   ScanFormat format_;
   std::string topic_;
-  std::vector<RecordedTopic> types_;  ///< of each recording
-  std::vector<std::size_t> ends_;     ///< number of scans up to each recording's end
+  std::shared_ptr<const VelodyneCalibration> calibration_;  ///< of an HDL-64
+  std::vector<RecordedTopic> types_;                        ///< of each recording
+  std::vector<std::size_t> ends_;                           ///< number of scans up to each recording's end
   std::size_t last_ = kNone;
   double recorded_ = 0.0;  ///< s; when the last message was
   Origin origin_;
@@ -123,8 +139,8 @@ std::string listed(const std::vector<ScanTopic>& topics)
   return topics.size() <= kMost ? text : text + ", and " + std::to_string(topics.size() - kMost) + " more";
 }
 
-/// Why the first recording ends before its end, to be told beside what was not found in it.
-std::string damageIn(const Recordings& recordings)
+/// Why the first recording ends before its end.
+std::optional<FileError> damageOf(const Recordings& recordings)
 {
   for (const auto& recording : recordings) {
     recording->select(kNone);
@@ -133,15 +149,26 @@ std::string damageIn(const Recordings& recordings)
         (void)recording->read(0);
       }
     } catch (const FileError& error) {
-      return std::string("; and it is damaged: ") + error.what();
+      return error;
     }
   }
-  return "";
+  return std::nullopt;
+}
+
+/// The same, to be told beside what was not found.
+std::string damageIn(const Recordings& recordings)
+{
+  const std::optional<FileError> damage = damageOf(recordings);
+  return damage ? std::string("; and it is damaged: ") + damage->what() : "";
 }
 
 std::string chooseTopic(const std::filesystem::path& input, const Recordings& recordings, const std::string& topic)
 {
   std::vector<ScanTopic> all = topicsOf(recordings);
+  if (all.empty()) {
+    const std::optional<FileError> damage = damageOf(recordings);
+    throw damage ? FileError(*damage) : FileError(input, "is empty: no topic was recorded");
+  }
   std::vector<ScanTopic> scans;
   std::copy_if(all.begin(), all.end(), std::back_inserter(scans), [](const ScanTopic& t) { return t.has_scans; });
   if (!topic.empty()) {
@@ -158,8 +185,10 @@ std::string chooseTopic(const std::filesystem::path& input, const Recordings& re
     return topic;
   }
   if (scans.empty()) {
-    throw FileError(input, "has no topic with scans (PointCloud2, CustomMsg, VelodyneScan). Its topics: " +
-                               (all.empty() ? "none" : listed(all)) + damageIn(recordings));
+    throw FileError(input,
+                    "has no topic with scans (PointCloud2, CustomMsg, VelodyneScan): record the lidar's, too. "
+                    "Its topics: " +
+                        listed(all) + damageIn(recordings));
   }
   if (scans.size() > 1) {
     throw FileError(input,
@@ -188,13 +217,21 @@ std::vector<ScanTopic> topicsOf(const Recordings& recordings)
 }
 
 std::unique_ptr<ScanReader> openMessages(const std::filesystem::path& input, Recordings recordings, ScanFormat format,
-                                         const std::string& topic)
+                                         const std::string& topic,
+                                         std::shared_ptr<const VelodyneCalibration> calibration)
 {
   const std::string chosen = chooseTopic(input, recordings, topic);
-  auto scans = std::make_unique<MessageScans>(std::move(recordings), format, chosen);
-  if (scans->size() == 0) {
-    throw FileError(input, "topic '" + chosen + "' has no message");
+  for (const ScanTopic& candidate : calibration ? topicsOf(recordings) : std::vector<ScanTopic>()) {
+    if (candidate.name == chosen && !holdsVelodynePackets(candidate.type)) {
+      throw FileError(input, "topic '" + chosen + "' is of type " + candidate.type +
+                                 ", which needs no calibration: leave --calibration out");
+    }
   }
+  auto scans = std::make_unique<MessageScans>(std::move(recordings), format, chosen, std::move(calibration));
+  if (scans->size() == 0) {
+    throw FileError(input, "topic '" + chosen + "' has no message: the lidar sent none while this was recorded");
+  }
+  scans->checkKind();
   return scans;
 }
 

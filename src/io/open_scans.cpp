@@ -112,22 +112,29 @@ MessageInput openRecordings(const fs::path& input)
 
 }  // namespace
 
-std::unique_ptr<ScanReader> openScans(const fs::path& input, const std::string& topic)
+std::unique_ptr<ScanReader> openScans(const fs::path& input, const ScanSourceOptions& options)
 {
   std::error_code error;
   if (!fs::exists(input, error)) {
     throw FileError(input, error ? "cannot be read: " + error.message() : "no such folder or file");
   }
+  std::shared_ptr<const VelodyneCalibration> calibration;
+  if (!options.calibration.empty()) {
+    calibration = std::make_shared<VelodyneCalibration>(readVelodyneCalibration(options.calibration));
+  }
   MessageInput messages = openRecordings(input);
   if (!messages.recordings.empty()) {
-    return openMessages(input, std::move(messages.recordings), messages.format, topic);
+    return openMessages(input, std::move(messages.recordings), messages.format, options.topic, std::move(calibration));
   }
   const bool is_folder = fs::is_directory(input, error);
   if (!is_folder && isCapture(magicOf(input))) {
-    return openCapture(input, topic);
+    return openCapture(input, options.topic, std::move(calibration));
   }
-  if (!topic.empty()) {
+  if (!options.topic.empty()) {
     throw FileError(input, "has no topics: --topic (or the argument topic) is for recordings");
+  }
+  if (calibration) {
+    throw FileError(input, "has no packets of a Velodyne: --calibration is for recordings of an HDL-64's");
   }
   return is_folder ? openFolder(input) : openScanFile(input);
 }

@@ -5,6 +5,7 @@
 
 #include "io/text.h"
 
+#include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <pcl/io/lzf.h>
@@ -234,6 +235,7 @@ void readPcdBody(const std::filesystem::path& file, const PcdHeader& header, std
     case PcdEncoding::binary: readBinary(file, header, content, cloud); break;
     case PcdEncoding::binary_compressed: readCompressed(file, header, content, cloud); break;
   }
+  makeCoordinatesFloat(cloud);
 }
 
 }  // namespace pcl_floam

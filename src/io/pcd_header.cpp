@@ -224,8 +224,8 @@ private:
     if (field == header_.fields.end()) {
       fail("the points have no field " + inQuotes(name));
     }
-    if (field->type != 'F' || field->size != 4 || field->count != 1) {
-      fail("field " + inQuotes(name) + " is not one float32 (TYPE F, SIZE 4, COUNT 1)");
+    if (field->type != 'F' || field->count != 1) {
+      fail("field " + inQuotes(name) + " is not one float32 or float64 (TYPE F, SIZE 4 or 8, COUNT 1)");
     }
   }
 

@@ -46,7 +46,7 @@ struct PcdHeader {
 /// \param file    for the error message
 /// \param content the whole file
 /// \throws FileError with line and reason: a number that is none, sizes that disagree, a type that does not exist,
-///         no x, y, z of type float32.
+///         no x, y, z of type float32 or float64.
 [[nodiscard]] PcdHeader parsePcdHeader(const std::filesystem::path& file, std::string_view content);
 
 }  // namespace pcl_floam

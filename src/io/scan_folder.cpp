@@ -175,6 +175,10 @@ std::unique_ptr<ScanReader> openScanFile(const fs::path& file)
 {
   const std::string extension = lowerExtension(file);
   if (extension != ".pcd" && extension != ".bin") {
+    std::error_code error;
+    if (fs::file_size(file, error) == 0 && !error) {
+      throw FileError(file, "the file is empty");
+    }
     throw FileError(file, "byte 0: is no scan (.pcd, .bin) and no recording that is read (mcap, rosbag 1 or 2, pcap)");
   }
   return std::make_unique<ScanFiles>(std::vector<fs::path>{file}, std::vector<double>(),

@@ -38,7 +38,8 @@ public:
 /// One .pcd or .bin file. \throws FileError if it is none by its name.
 [[nodiscard]] std::unique_ptr<ScanReader> openScanFile(const std::filesystem::path& file);
 
-/// Whatever \p input is. \param topic may be empty \throws FileError as ScanSource
-[[nodiscard]] std::unique_ptr<ScanReader> openScans(const std::filesystem::path& input, const std::string& topic);
+/// Whatever \p input is. \throws FileError as ScanSource
+[[nodiscard]] std::unique_ptr<ScanReader> openScans(const std::filesystem::path& input,
+                                                    const ScanSourceOptions& options);
 
 }  // namespace pcl_floam

@@ -12,7 +12,12 @@ namespace pcl_floam {
 
 namespace fs = std::filesystem;
 
-ScanSource::ScanSource(const fs::path& input, const std::string& topic) : reader_(openScans(input, topic))
+ScanSource::ScanSource(const fs::path& input, const std::string& topic)
+    : ScanSource(input, ScanSourceOptions{topic, {}})
+{
+}
+
+ScanSource::ScanSource(const fs::path& input, const ScanSourceOptions& options) : reader_(openScans(input, options))
 {
   folder_ = reader_->size() > 0 ? reader_->path(0).parent_path() : input;
   if (folder_.empty()) {

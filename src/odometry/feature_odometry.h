@@ -132,6 +132,8 @@ struct FeatureOdometry {
     correctVerticalAngle(parameters.vertical_correction, measured);
     report.milliseconds.features = watch.lap();
 
+    report.structure = lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;
+    report.scan_line_failure = lines.failure;
     report.scan_line_source = lines.source;
     report.scan_line_confidence = lines.confidence;
     report.scan_lines = lines.lines();

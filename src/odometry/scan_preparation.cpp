@@ -10,7 +10,12 @@ namespace pcl_floam {
 
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
-  findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+  if (parameters.structure == ScanStructure::space) {
+    lines = ScanLines();
+    lines.failure = ScanLineFailure::not_looked_for;
+  } else {
+    findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+  }
   timing = findScanTiming(scan, lines, parameters.timing_source, parameters.rotation, parameters.threads);
   sweep_fraction = timing.valid() && parameters.compensation != CompensationMode::none ? 1.0 : 0.0;
   if (timing.duration > 0.0 && period > 0.0) {

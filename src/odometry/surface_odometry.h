@@ -49,6 +49,9 @@ struct SurfaceOdometry {
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
+    if (parameters.structure == ScanStructure::scan_lines && !scan.lines.valid()) {
+      return predictOnly(toString(scan.lines.failure));
+    }
     if (!hasEnoughPoints()) {
       return predictOnly("too few points");
     }
@@ -80,6 +83,8 @@ struct SurfaceOdometry {
     report.milliseconds.scan_lines = watch.lap();
     scan.takePoints(cloud, parameters);
     report.milliseconds.features = watch.lap();
+    report.structure = scan.lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;
+    report.scan_line_failure = scan.lines.failure;
     report.scan_line_source = scan.lines.source;
     report.scan_line_confidence = scan.lines.confidence;
     report.scan_lines = scan.lines.lines();

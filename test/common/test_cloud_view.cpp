@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 namespace pcl_floam::test {
@@ -86,6 +87,39 @@ TEST(CloudView, RefusesACloudWithoutPositions)
   EXPECT_THROW(static_cast<void>(viewOf(
                    CloudBuilder().field("x", std::vector<double>(3)).field("y", zeros).field("z", zeros).build())),
                std::invalid_argument);
+}
+
+TEST(CloudView, Float64CoordinatesAreMadeFloatInPlace)
+{
+  const auto make = [](double z) {
+    return CloudBuilder()
+        .field("pad", std::vector<std::uint8_t>(3))
+        .field("z", std::vector<double>{z, 1e300, -1e300})
+        .field("x", std::vector<double>{0.1, 5e6 + 0.3, 3.0})
+        .field("ring", std::vector<std::uint16_t>{7, 8, 9})
+        .field("y", std::vector<float>{1.5F, 2.5F, 3.5F})
+        .build();
+  };
+  auto cloud = make(-2.25);
+  makeCoordinatesFloat(cloud);
+  const CloudView view = viewOf(cloud);
+  EXPECT_EQ(view.x(0), 0.1F);
+  EXPECT_EQ(view.x(1), 5000000.5F) << "float32 steps by half a metre there";
+  EXPECT_EQ(view.y(2), 3.5F);
+  EXPECT_EQ(view.z(0), -2.25F);
+  EXPECT_EQ(view.z(1), std::numeric_limits<float>::infinity());
+  EXPECT_EQ(view.z(2), -std::numeric_limits<float>::infinity());
+  EXPECT_EQ(view.ring.read(view.point(2)), 9.0);
+
+  cloud = make(0.0);
+  cloud.fields[2].offset = cloud.point_step - 7;
+  EXPECT_THROW(makeCoordinatesFloat(cloud), std::invalid_argument);
+  cloud = make(0.0);
+  cloud.data.pop_back();
+  EXPECT_THROW(makeCoordinatesFloat(cloud), std::invalid_argument);
+  cloud = make(0.0);
+  cloud.is_bigendian = 1;
+  EXPECT_THROW(makeCoordinatesFloat(cloud), std::invalid_argument);
 }
 
 TEST(CloudView, RefusesABlobThatIsTooShort)

@@ -284,5 +284,16 @@ TEST(MotionCompensation, RefusesAMotionThatIsNotFinite)
   EXPECT_THROW(compensation.setTwist(twist), std::invalid_argument);
 }
 
+TEST(MotionCompensation, IndicesBeyondTheCloudAreRefused)
+{
+  const Cloud cloud = distortedCloud();
+  for (const int index : {-1, kPoints, 1000000}) {
+    MotionCompensation<PointXYZIRT> compensation = compensationOf(cloud);
+    compensation.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{0, kPoints - 1, index}));
+    Cloud output;
+    EXPECT_THROW(compensation.filter(output), std::invalid_argument) << index;
+  }
+}
+
 }  // namespace
 }  // namespace pcl_floam::test

@@ -1,13 +1,16 @@
 // Recordings and their messages from files of any bytes.
 #include "fuzz/fuzz_input.h"
 #include "fuzz/fuzz_targets.h"
+#include "support/hdl64_bytes.h"
 #include "support/recording_bytes.h"
 
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <vector>
 
 namespace pcl_floam::test {
 
@@ -73,6 +76,28 @@ void fuzzScanMessage(const std::uint8_t* bytes, std::size_t size)
   const std::string message(reinterpret_cast<const char*>(bytes) + 1, size - 1);
   const std::string encoding = bytes[0] % 2 == 0 ? "ros1" : "cdr";
   openAndRead(folder.write("message.mcap", mcapFile(kTypes[bytes[0] / 2 % 3], encoding, {message})));
+}
+
+void fuzzCalibration(const std::uint8_t* bytes, std::size_t size)
+{
+  static const TemporaryFolder folder;
+  static std::vector<Hdl64Return> returns;
+  static const std::filesystem::path capture = folder.write("hdl64.pcap", hdl64Capture({6.0, 9.0}, 4, returns));
+  const std::filesystem::path calibration = writeInput(folder, "calibration", bytes, size);
+  try {
+    (void)isLaserCalibration(calibration);
+    const ScanSource scans(capture, ScanSourceOptions{"", calibration});
+    pcl::PCLPointCloud2 cloud;
+    scans.read(0, cloud);
+    const CloudView view = viewOf(cloud);
+    mustHold(view.size == returns.size(), "a calibration that takes points away");
+    for (std::size_t i = 0; i < view.size; ++i) {
+      constexpr float kFarthest = 2000.0F;  // m; 65535 units of the coarsest, and corrections
+      mustHold(std::abs(view.x(i)) + std::abs(view.y(i)) + std::abs(view.z(i)) < kFarthest, "a point that is nowhere");
+      mustHold(view.ring.read(view.point(i)) < 64.0, "a ring that is none");
+    }
+  } catch (const FileError&) {
+  }
 }
 
 }  // namespace pcl_floam::test

@@ -17,6 +17,7 @@ void fuzzTimes(const std::uint8_t* bytes, std::size_t size);            ///< tim
 void fuzzMap(const std::uint8_t* bytes, std::size_t size);              ///< both layers of a saved map
 void fuzzRecording(const std::uint8_t* bytes, std::size_t size);        ///< a bag, an mcap or a capture, and its scans
 void fuzzScanMessage(const std::uint8_t* bytes, std::size_t size);      ///< a message; the first byte tells its type
+void fuzzCalibration(const std::uint8_t* bytes, std::size_t size);      ///< of an HDL-64, and a scan decoded by it
 void fuzzOdometryOptions(const std::uint8_t* bytes, std::size_t size);  ///< arguments of the tool, one a line
 
 }  // namespace pcl_floam::test

@@ -44,7 +44,8 @@ std::vector<Corpus> corpora()
                              {"times", fuzzTimes},
                              {"map", fuzzMap},
                              {"recording", fuzzRecording},
-                             {"scan_message", fuzzScanMessage}};
+                             {"scan_message", fuzzScanMessage},
+                             {"calibration", fuzzCalibration}};
 #ifdef PCL_FLOAM_WITH_TOOLS
   all.push_back({"odometry_options", fuzzOdometryOptions});
 #endif

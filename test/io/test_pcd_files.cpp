@@ -186,7 +186,6 @@ TEST_F(PcdHeaders, MistakesAreNamedWithTheirLine)
   const std::vector<std::array<std::string, 3>> cases = {{"FIELDS", "x y", "line 4: SIZE has 4 entries for 2 fields"},
                                                          {"FIELDS", "x y w t", "no field 'z'"},
                                                          {"SIZE", "4 4 4 3", "line 4: SIZE '3'"},
-                                                         {"SIZE", "8 4 4 4", "field 'x' is not one float32"},
                                                          {"SIZE", "4 4 4", "line 4: SIZE has 3 entries for 4 fields"},
                                                          {"TYPE", "F F F Q", "line 5: TYPE 'Q'"},
                                                          {"TYPE", "F F I U", "field 'z' is not one float32"},
@@ -299,6 +298,31 @@ TEST_F(PcdHeaders, FieldsOfSeveralElementsKeepTheirPlaces)
   EXPECT_EQ(view.x(1), 2.0F);
   EXPECT_EQ(view.y(0), 3.0F);
   EXPECT_EQ(view.z(1), 6.0F);
+}
+
+TEST_F(PcdHeaders, Float64CoordinatesAreReadAsFloat)
+{
+  std::string text = header("SIZE", "8 8 8 4");
+  pcl::PCLPointCloud2 cloud;
+  readPcd(folder.write("wide.pcd", text + "500000.25 2.5 -3 4\n5 6 1e300 8\n"), cloud);
+  CloudView view = viewOf(cloud);
+  EXPECT_EQ(view.x(0), 500000.25F);
+  EXPECT_EQ(view.z(0), -3.0F);
+  EXPECT_EQ(view.time.read(view.point(0)), 4.0);
+  EXPECT_EQ(view.y(1), 6.0F);
+  EXPECT_TRUE(std::isinf(view.z(1)));
+
+  text.replace(text.find("DATA ascii"), 10, "DATA binary");
+  const double point[] = {0.1, 0.2, 0.3};
+  std::string bytes(reinterpret_cast<const char*>(point), sizeof(point));
+  bytes += std::string(4, '\0');
+  readPcd(folder.write("wide.pcd", text + bytes + bytes), cloud);
+  view = viewOf(cloud);
+  ASSERT_EQ(view.size, 2U);
+  EXPECT_EQ(view.x(1), 0.1F);
+  EXPECT_EQ(view.z(1), 0.3F);
+  EXPECT_NE(reasonOf(folder.write("bad.pcd", header("TYPE", "I F F U") + "1 2 3 4\n5 6 7 8\n")).find("float64"),
+            std::string::npos);
 }
 
 TEST_F(PcdHeaders, OptionalLinesMayBeMissing)

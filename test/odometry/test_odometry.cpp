@@ -369,6 +369,42 @@ TEST(Odometry, NeedsNoScanLines)
   }
 }
 
+TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)
+{
+  OdometryParameters parameters = defaults();
+  const auto track = [&](const Cloud& scan) { return Odometry<PointXYZIRT>(parameters).track(scan); };
+  const Cloud lines = sweep(steadyPath, 0);
+  Cloud none = lines;  // in a frame on its side, without rings and shuffled
+  std::mt19937 random(5);
+  std::shuffle(none.begin(), none.end(), random);
+  for (PointXYZIRT& point : none) {
+    point.getVector3fMap() = expSO3({0.9, 0.5, 0.3}).cast<float>() * point.getVector3fMap();
+    point.ring = 0;
+  }
+  EXPECT_EQ(track(lines).structure, ScanStructure::scan_lines);
+  EXPECT_EQ(track(lines).scan_line_failure, ScanLineFailure::none);
+  EXPECT_EQ(track(none).structure, ScanStructure::space);
+  EXPECT_EQ(track(none).scan_line_failure, ScanLineFailure::no_line_structure);
+
+  parameters.structure = ScanStructure::scan_lines;
+  EXPECT_EQ(track(lines).state, TrackingState::initialized);
+  EXPECT_EQ(track(none).state, TrackingState::not_started);
+  EXPECT_EQ(track(none).reason, toString(ScanLineFailure::no_line_structure));
+
+  parameters.structure = ScanStructure::space;
+  if (parameters.engine == OdometryEngine::features) {
+    EXPECT_THROW(track(lines), std::invalid_argument);
+    return;
+  }
+  const OdometryReport report = track(lines);
+  EXPECT_EQ(report.state, TrackingState::initialized);
+  EXPECT_EQ(report.structure, ScanStructure::space);
+  EXPECT_EQ(report.scan_line_failure, ScanLineFailure::not_looked_for);
+  EXPECT_EQ(report.scan_lines + report.edges, 0U);
+  parameters.scan_line_source = ScanLineSource::ring_field;
+  EXPECT_THROW(track(lines), std::invalid_argument) << "a source without effect";
+}
+
 TEST(Odometry, LocalizesInAMapMadeBefore)
 {
   Odometry<PointXYZIRT> mapping(defaults());

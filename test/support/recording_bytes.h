@@ -76,6 +76,7 @@ struct CloudShape {
   std::uint32_t row_step = 24;
   std::uint32_t z_offset = 8;
   bool big_endian = false;
+  bool float64 = false;  ///< x, y, z; their offsets then are doubled
   std::string data = bytesOf(1.0F) + bytesOf(2.0F) + bytesOf(3.0F) + bytesOf(4.0F) + bytesOf(5.0F) + bytesOf(6.0F);
 };
 
@@ -86,7 +87,8 @@ inline std::string pointCloud2(const CloudShape& shape, MessageBytes message = M
   const std::uint32_t offsets[] = {0, 4, shape.z_offset};
   const char* names[] = {"x", "y", "z"};
   for (int i = 0; i < 3; ++i) {
-    message.text(names[i]).number(offsets[i]).number(std::uint8_t{7}).number(std::uint32_t{1});
+    message.text(names[i]).number((shape.float64 ? 2 : 1) * offsets[i]);
+    message.number(static_cast<std::uint8_t>(shape.float64 ? 8 : 7)).number(std::uint32_t{1});
   }
   message.number(static_cast<std::uint8_t>(shape.big_endian)).number(shape.point_step).number(shape.row_step);
   message.number(static_cast<std::uint32_t>(shape.data.size())).raw(shape.data).number(std::uint8_t{1});

@@ -90,6 +90,43 @@ private:
   std::string bytes_;
 };
 
+/// The same as pcapng, by its specification: one section, one interface, one block for each packet.
+class NewCaptureBytes {
+public:
+  explicit NewCaptureBytes(bool nanoseconds) : ticks_(nanoseconds ? 1e9 : 1e6)
+  {
+    constexpr std::uint16_t kEthernet = 1;
+    block(0x0A0D0D0A,
+          bytesOf(0x1A2B3C4DU) + bytesOf(std::uint16_t{1}) + bytesOf(std::uint16_t{0}) + bytesOf(std::int64_t{-1}));
+    // The option if_tsresol of one byte, filled up to four, and the options' end.
+    const std::string resolution = bytesOf(std::uint16_t{9}) + bytesOf(std::uint16_t{1}) + std::string("\x09\0\0\0", 4);
+    block(1, bytesOf(kEthernet) + bytesOf(std::uint16_t{0}) + bytesOf(std::uint32_t{0}) +
+                 (nanoseconds ? resolution + bytesOf(std::uint32_t{0}) : ""));
+  }
+  NewCaptureBytes& packet(double time, const std::string& data)
+  {
+    const auto ticks = static_cast<std::uint64_t>(std::floor(time)) * static_cast<std::uint64_t>(ticks_) +
+                       static_cast<std::uint64_t>(ticks_ * (time - std::floor(time)));
+    const auto size = static_cast<std::uint32_t>(data.size());
+    block(6, bytesOf(std::uint32_t{0}) + bytesOf(static_cast<std::uint32_t>(ticks >> 32U)) +
+                 bytesOf(static_cast<std::uint32_t>(ticks)) + bytesOf(size) + bytesOf(size) + data);
+    return *this;
+  }
+  /// A block of another kind, which readers step over.
+  NewCaptureBytes& block(std::uint32_t type, std::string body)
+  {
+    body.resize((body.size() + 3) / 4 * 4, '\0');
+    const std::string length = bytesOf(static_cast<std::uint32_t>(body.size() + 12));
+    bytes_ += bytesOf(type) + length + body + length;
+    return *this;
+  }
+  [[nodiscard]] const std::string& bytes() const { return bytes_; }
+
+private:
+  double ticks_;
+  std::string bytes_;
+};
+
 /// A capture of whole seconds of a sensor.
 inline std::string velodyneCapture(const VelodyneSetting& setting, double seconds)
 {

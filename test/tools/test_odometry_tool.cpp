@@ -56,6 +56,39 @@ TEST_F(OdometryTool, SaysInHowManyScansADirectionWasWeak)
   EXPECT_GT(summary()["scans"]["with_weak_directions"], kScans / 2);
 }
 
+TEST_F(OdometryTool, SaysWhetherItWorkedFromScanLinesOrSpaceAndWhy)
+{
+  Outcome outcome = odometry("scans -o result --plot none");
+  EXPECT_NE(outcome.out.find("scan lines: 32 scan lines by file order"), std::string::npos) << outcome.out;
+  EXPECT_EQ(summary()["last_scan"]["structure"], "scan lines");
+  outcome = odometry("scans -o result --structure space --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("space: scan lines were not looked for; times by none"), std::string::npos) << outcome.out;
+  EXPECT_EQ(summary()["last_scan"]["structure"], "space");
+  EXPECT_EQ(summary()["last_scan"]["structure_reason"], "scan lines were not looked for");
+  EXPECT_EQ(summary()["settings"]["structure"], "space");
+  EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
+
+  // Every third point, and the frame on its side: no lines are left.
+  const std::string bin = contentOf(folder.path() / "scans/0.bin");
+  std::vector<std::string> points;
+  for (std::size_t i = 0; i + 16 <= bin.size(); i += 48) {
+    points.push_back(bin.substr(i + 8, 4) + bin.substr(i, 8) + std::string(4, '\0'));
+  }
+  std::sort(points.begin(), points.end());
+  std::string without;
+  for (const std::string& point : points) {
+    without += point;
+  }
+  folder.write("none/0.bin", without);
+  outcome = odometry("none -o result --structure scan-lines --plot none");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("0.bin: not tracked: no scan-line structure was found"), std::string::npos) << outcome.err;
+  EXPECT_EQ(odometry("none -o result --plot none").status, 0);
+  EXPECT_EQ(odometry("scans -o result --structure space --engine features").status, 2);
+  EXPECT_EQ(odometry("scans -o result --structure lines").status, 2);
+}
+
 TEST_F(OdometryTool, DrawsThePictureIfGnuplotIsThereAndSaysSoIfNot)
 {
   const Outcome outcome = odometry("scans -o result --ground-truth truth.txt");

@@ -1,4 +1,5 @@
 // The tools on recordings: the same scans give the same path, whatever they are kept in.
+#include "support/hdl64_bytes.h"
 #include "support/recording_bytes.h"
 #include "tools/odometry_tool_fixture.h"
 
@@ -16,7 +17,6 @@ class RecordingTools : public test::OdometryTool {
 protected:
   RecordingTools()
   {
-    std::vector<std::string> messages;
     for (std::size_t i = 0; i < kScans; ++i) {
       test::CloudShape shape;
       shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
@@ -29,6 +29,7 @@ protected:
     folder.write("drive.mcap", whole);
   }
   [[nodiscard]] Outcome convert(const std::string& arguments) const { return run(PCL_FLOAM_CONVERT, arguments); }
+  std::vector<std::string> messages;
   std::string whole;
 };
 
@@ -64,6 +65,88 @@ TEST_F(RecordingTools, ARecordingThatWasCutOffGivesItsScansAndTheStatusOne)
   EXPECT_EQ(converted.status, 1);
   EXPECT_NE(converted.err.find("cut off"), std::string::npos) << converted.err;
   EXPECT_EQ(ScanSource(folder.path() / "converted").size(), kScans - 1);
+}
+
+TEST_F(RecordingTools, WhatHoldsNoScanIsToldInOneLineAndNothingIsWritten)
+{
+  const std::string magic = whole.substr(0, 8);
+  const std::string cloud = "sensor_msgs/msg/PointCloud2";
+  std::string no_x = test::pointCloud2({});
+  no_x[no_x.find(std::string("x\0", 2))] = 'a';
+  const std::string no_topic = magic + test::mcapRecord(1, test::counted("") + test::counted("test")) +
+                               test::mcapRecord(15, std::string(4, '\0')) + test::mcapRecord(2, std::string(20, '\0')) +
+                               magic;
+  const std::pair<std::string, std::string> cases[] = {
+      {test::mcapFile(cloud, "cdr", {no_x, no_x, no_x}), "no field 'x' of type float32 or float64"},
+      {test::mcapFile(cloud, "cdr", {no_x}), "Its fields: a, y, z"},
+      {test::mcapFile(cloud, "cdr", {}), "topic '/points' has no message"},
+      {test::mcapFile("sensor_msgs/msg/Imu", "cdr", {"x"}), "Its topics: /points (sensor_msgs/msg/Imu"},
+      {no_topic, "is empty: no topic was recorded"},
+      {magic, "drive.mcap: byte 8: the file ends without its footer"},
+      {"#ROSBAG V1.2\n", "drive.mcap: byte 0: is a rosbag of another version"},
+      {"", "drive.mcap: the file is empty"}};
+  for (const auto& [content, told] : cases) {
+    folder.write("drive.mcap", content);
+    for (const Outcome& outcome : {odometry("drive.mcap -o result --plot none"), convert("drive.mcap -o result")}) {
+      EXPECT_EQ(outcome.status, 2) << told;
+      EXPECT_NE(outcome.err.find(told), std::string::npos) << outcome.err << "expected: " << told;
+      EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+      EXPECT_FALSE(std::filesystem::exists(folder.path() / "result")) << told;
+    }
+  }
+}
+
+TEST_F(RecordingTools, ADamagedFirstScanIsNoReasonToRefuseTheOthers)
+{
+  std::vector<std::string> damaged = messages;
+  damaged[0].resize(30);
+  folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", damaged));
+  EXPECT_EQ(odometry("drive.mcap -o result --plot none").status, 1);
+  EXPECT_EQ(summary()["scans"]["tracked"], kScans - 2);
+}
+
+TEST_F(RecordingTools, TimesThatRunBackAreToldOnceAndCounted)
+{
+  std::vector<std::string> back;
+  for (const std::size_t i : {0U, 1U, 2U, 1U, 4U, 3U, 6U, 7U}) {
+    back.push_back(messages[i]);
+  }
+  folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", back));
+  const Outcome outcome = odometry("drive.mcap -o result --plot none -q");
+  EXPECT_NE(outcome.err.find("drive.mcap: the time of drive.mcap scan 3 is not after"), std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.err.find("those of 1 more scans"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("scan 5 is not after"), std::string::npos) << outcome.err;
+  EXPECT_EQ(poses().size(), kScans);
+}
+
+TEST_F(RecordingTools, AnHdl64IsReadWithItsCalibration)
+{
+  std::vector<test::Hdl64Return> returns;
+  folder.write("a.pcap", test::hdl64Capture({6.0, 9.0}, 3 * 348, returns));
+  folder.write("db.xml", test::hdl64Xml());
+  const Outcome without = convert("a.pcap -o converted");
+  if (without.err.find("left out") != std::string::npos) {
+    GTEST_SKIP() << "SKIPPED: " << without.err;
+  }
+  EXPECT_EQ(without.status, 2);
+  EXPECT_NE(without.err.find("--calibration"), std::string::npos) << without.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "converted"));
+  const Outcome converted = convert("a.pcap --calibration db.xml -o converted -q");
+  if (converted.err.find("left out") != std::string::npos) {
+    GTEST_SKIP() << "SKIPPED: " << converted.err;
+  }
+  ASSERT_EQ(converted.status, 0) << converted.err;
+  EXPECT_EQ(ScanSource(folder.path() / "converted").size(), 3U);
+
+  EXPECT_EQ(odometry("a.pcap -o result --plot none").status, 2);
+  const Outcome outcome = odometry("a.pcap --calibration db.xml -o result --max-scans 1 --plot none");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("64 scan lines by ring field"), std::string::npos) << outcome.out;
+  // KITTI's calibration is that of the true poses; without these it is a mistake.
+  folder.write("calib.txt", "Tr: 1 0 0 0 0 1 0 0 0 0 1 0\n");
+  EXPECT_EQ(odometry("scans --calibration calib.txt -o result --plot none").status, 2);
+  EXPECT_EQ(odometry("scans --calibration calib.txt --ground-truth truth.txt -o result --plot none").status, 0);
 }
 
 TEST_F(RecordingTools, ConvertedTheScansAreTheSame)

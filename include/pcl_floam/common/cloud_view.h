@@ -79,9 +79,15 @@ template <typename PointT>
 }
 
 /// The view of a cloud whose point type is known only at run time.
-/// \throws std::invalid_argument if x, y or z is missing or not float32, a field that is read ends beyond its point,
-/// the blob is shorter than its width times height points, its rows have bytes between them (row_step), or its numbers
-/// are big-endian.
+/// \throws std::invalid_argument if x, y or z is missing or not float32 (see makeCoordinatesFloat), a field that is
+/// read ends beyond its point, the blob is shorter than its width times height points, its rows have bytes between them
+/// (row_step), or its numbers are big-endian.
 [[nodiscard]] CloudView viewOf(const pcl::PCLPointCloud2& cloud);
+
+/// Makes x, y, z that are float64 float32, in place: the points keep their size and all other fields. Far from the
+/// origin that costs precision (at 5e6 m, as in UTM coordinates, float32 steps by 0.5 m): subtract an offset before.
+/// Numbers that float32 cannot hold become infinite, which is no measured point.
+/// \throws std::invalid_argument as \ref viewOf, with the cloud left as it was.
+void makeCoordinatesFloat(pcl::PCLPointCloud2& cloud);
 
 }  // namespace pcl_floam

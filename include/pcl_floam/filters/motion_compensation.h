@@ -24,7 +24,8 @@ namespace pcl_floam {
 /// \endcode
 /// Points keep their order and all their fields, also their time; normals are turned with the points. Points that
 /// are not finite stay as they are. If no time can be told, or nothing moves, the output is a copy of the input.
-/// With indices set, the output holds just those points, in their order.
+/// With indices set, the output holds just those points, in their order; an index that is none of the cloud's points
+/// makes `filter` throw std::invalid_argument.
 template <typename PointT>
 class MotionCompensation : public pcl::Filter<PointT> {
   using Base = pcl::Filter<PointT>;
@@ -74,6 +75,8 @@ protected:
   void applyFilter(PointCloud& output) override;
 
 private:
+  void checkIndices() const;
+
   Vector6 twist_ = Vector6::Zero();
   Vector6 acceleration_ = Vector6::Zero();
   PoseInstant instant_ = PoseInstant::end;

@@ -22,9 +22,23 @@ enum class ScanLineSource : std::uint8_t {
   elevation_clusters  ///< clusters of the elevations found in the scan itself
 };
 
-/// Why a scan has no lines.
-enum class ScanLineFailure : std::uint8_t { none, empty_cloud, source_not_available, no_line_structure };
+/// What the odometry works from: scan lines, or neighbourhoods in space.
+enum class ScanStructure : std::uint8_t {
+  automatic,   ///< scan lines where they are found, space otherwise
+  scan_lines,  ///< scan lines; a scan without them is not tracked
+  space        ///< neighbourhoods in space alone: scan lines are not looked for
+};
 
+/// Why a scan has no lines.
+enum class ScanLineFailure : std::uint8_t {
+  none,
+  empty_cloud,
+  source_not_available,
+  no_line_structure,
+  not_looked_for  ///< as ScanStructure::space wants it
+};
+
+[[nodiscard]] const char* toString(ScanStructure structure);
 [[nodiscard]] const char* toString(ScanLineSource source);
 [[nodiscard]] const char* toString(ScanLineFailure failure);
 

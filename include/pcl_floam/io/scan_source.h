@@ -52,6 +52,15 @@ struct ScanTopic {
   bool has_scans = false;      ///< it can be given to a ScanSource
 };
 
+/// What else a ScanSource may have to know.
+struct ScanSourceOptions {
+  /// Of a recording with several: which; of a pcap the sender, as address:port. Empty: there is but one.
+  std::string topic;
+  /// The calibration of a Velodyne HDL-64, whose packets cannot be decoded without: its maker's db.xml, or the YAML
+  /// that the ROS driver makes of it. Empty: none. Other inputs refuse one.
+  std::filesystem::path calibration;
+};
+
 /// The scans of a folder or of a recording, by number.
 ///
 /// The input may be
@@ -62,7 +71,7 @@ struct ScanTopic {
 /// - an MCAP file, a rosbag of ROS 1, a rosbag2's folder or a `.db3` file of it, with messages of the types
 /// PointCloud2,
 ///   Livox' CustomMsg, or VelodyneScan;
-/// - a pcap file with packets of a Velodyne VLP-16 or HDL-32E.
+/// - a pcap or pcapng file with packets of a Velodyne VLP-16, HDL-32E or HDL-64E (S2, S3).
 ///
 /// What it is, its first bytes tell, not its name. Formats whose library was missing when pcl_floam was built are
 /// refused with the library's name.
@@ -73,12 +82,15 @@ struct ScanTopic {
 /// copies.
 class ScanSource {
 public:
-  /// Lists the scans. Reads none yet.
-  /// \param topic of a recording with several: which; of a pcap the sender, as address:port
-  /// \throws FileError if the input cannot be read, holds no scans or several kinds of them, has several topics of
-  /// scans
+  /// Lists the scans. Reads none yet, but the first of a recording's messages, which tells whether its topic holds
+  /// scans. \param topic of a recording with several: which; of a pcap the sender, as address:port \throws FileError if
+  /// the input cannot be read, holds no scans or several kinds of them, has several topics of scans
   ///         and none is named, or if `times.txt` has a line that is no number or does not fit the number of scans.
   explicit ScanSource(const std::filesystem::path& input, const std::string& topic = "");
+
+  /// The same with more to know.
+  /// \throws FileError as the other, and if the calibration cannot be read, is missing or of no use.
+  ScanSource(const std::filesystem::path& input, const ScanSourceOptions& options);
 
   /// The folder that holds the scans, or the recording.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
@@ -95,7 +107,8 @@ public:
   /// \throws FileError as \ref read.
   [[nodiscard]] std::optional<double> stamp(std::size_t i) const;
 
-  /// Reads scan \p i with all its fields; KITTI's have x, y, z and intensity.
+  /// Reads scan \p i with all its fields; KITTI's have x, y, z and intensity. x, y, z are float32: float64 is turned
+  /// into that, which costs precision far from the origin (half a metre in UTM coordinates).
   /// \throws FileError if the file is missing, truncated, damaged or no such file.
   void read(std::size_t i, pcl::PCLPointCloud2& cloud) const;
 
@@ -108,9 +121,14 @@ private:
 /// \throws FileError as ScanSource.
 [[nodiscard]] std::vector<ScanTopic> listTopics(const std::filesystem::path& input);
 
+/// Whether a file is a calibration for ScanSourceOptions by its kind: XML, or YAML with a list of lasers.
+/// \throws FileError if it cannot be read.
+[[nodiscard]] bool isLaserCalibration(const std::filesystem::path& file);
+
 /// Reads one PCD file (ascii, binary, binary_compressed) with all its fields but 64-bit integers, for which PCL has no
 /// name before 1.14; their bytes stay in the points. What follows the declared number of points is ignored.
-/// \throws FileError as ScanSource::read, or if x, y, z are not float32.
+/// x, y, z of float64 become float32, as in ScanSource::read.
+/// \throws FileError as ScanSource::read, or if x, y, z are neither float32 nor float64.
 void readPcd(const std::filesystem::path& file, pcl::PCLPointCloud2& cloud);
 
 /// Reads one KITTI file: float32 x, y, z, intensity per point.

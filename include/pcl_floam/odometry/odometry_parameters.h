@@ -18,7 +18,11 @@ namespace pcl_floam {
 struct OdometryParameters {
   OdometryEngine engine = OdometryEngine::surfaces;
   SensorModel sensor;  ///< default "auto"
-  ScanLineSource scan_line_source = ScanLineSource::automatic;
+  /// Scan lines, or neighbourhoods in space. Default: scan lines where a scan has them. `space` takes clouds as those
+  /// of a lidar without scan lines, which the engine `features` cannot; with `scan_lines` a scan without them is not
+  /// tracked.
+  ScanStructure structure = ScanStructure::automatic;
+  ScanLineSource scan_line_source = ScanLineSource::automatic;  ///< where scan lines come from
   ScanTimingSource timing_source = ScanTimingSource::automatic;
   ScanRotation rotation = ScanRotation::automatic;
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the

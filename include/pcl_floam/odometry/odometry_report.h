@@ -62,6 +62,9 @@ struct OdometryReport {
   /// without an earlier one took in by then stays. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by
+  /// What the scan was worked from: scan lines or space; `automatic` if it was missing.
+  ScanStructure structure = ScanStructure::automatic;
+  ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why it was not scan lines
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;

@@ -33,7 +33,7 @@ std::uint8_t* store(Number value, std::uint8_t* target)
 
 }  // namespace
 
-void decodeLivoxCustom(MessageReader& message, pcl::PCLPointCloud2& cloud)
+void decodeLivoxCustom(MessageReader& message, const VelodyneCalibration* /*none*/, pcl::PCLPointCloud2& cloud)
 {
   cloud.header = toPcl(takeHeader(message));
   (void)message.number<std::uint64_t>();  // timebase: the header's stamp again

@@ -61,6 +61,8 @@ public:
   [[nodiscard]] bool numbersAreSwapped() const { return swap_; }
 
   [[noreturn]] void fail(const std::string& reason) const { reader_.fail(reason); }
+  /// For what all messages of the topic share. \throws UnreadableKind
+  [[noreturn]] void refuseKind(const std::string& reason) const { reader_.refuseKind(reason); }
 
 private:
   static constexpr std::size_t kEncapsulation = 4;  ///< bytes that alignment does not count

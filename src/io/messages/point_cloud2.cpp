@@ -2,6 +2,8 @@
 
 #include "io/messages/scan_messages.h"
 
+#include <pcl_floam/common/cloud_view.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -35,6 +37,16 @@ void takeFields(MessageReader& message, pcl::PCLPointCloud2& cloud)
   }
 }
 
+std::string fieldNames(const pcl::PCLPointCloud2& cloud)
+{
+  constexpr std::size_t kMost = 20;
+  std::string names;
+  for (std::size_t i = 0; i < std::min(kMost, cloud.fields.size()); ++i) {
+    names += (i == 0 ? "" : ", ") + cloud.fields[i].name.substr(0, 40);
+  }
+  return cloud.fields.empty() ? "none" : names;
+}
+
 /// A field's end must lie within its point, as every reader of the cloud relies on.
 void checkFields(const MessageReader& message, const pcl::PCLPointCloud2& cloud)
 {
@@ -49,8 +61,12 @@ void checkFields(const MessageReader& message, const pcl::PCLPointCloud2& cloud)
   for (const char* name : {"x", "y", "z"}) {
     const auto field = std::find_if(cloud.fields.begin(), cloud.fields.end(),
                                     [name](const pcl::PCLPointField& candidate) { return candidate.name == name; });
-    if (field == cloud.fields.end() || field->datatype != pcl::PCLPointField::FLOAT32) {
-      message.fail(std::string("the points have no field '") + name + "' of type float32: this topic is no scan");
+    if (field == cloud.fields.end() ||
+        (field->datatype != pcl::PCLPointField::FLOAT32 && field->datatype != pcl::PCLPointField::FLOAT64)) {
+      message.refuseKind(
+          std::string("the points have no field '") + name +
+          "' of type float32 or float64: this topic is no scan, choose another with --topic. Its fields: " +
+          fieldNames(cloud));
     }
   }
 }
@@ -100,7 +116,7 @@ void turnNumbersRound(pcl::PCLPointCloud2& cloud)
 
 }  // namespace
 
-void decodePointCloud2(MessageReader& message, pcl::PCLPointCloud2& cloud)
+void decodePointCloud2(MessageReader& message, const VelodyneCalibration* /*none*/, pcl::PCLPointCloud2& cloud)
 {
   cloud.header = toPcl(takeHeader(message));
   cloud.height = message.number<std::uint32_t>();
@@ -116,6 +132,7 @@ void decodePointCloud2(MessageReader& message, pcl::PCLPointCloud2& cloud)
   if (cloud.is_bigendian != 0) {
     turnNumbersRound(cloud);
   }
+  makeCoordinatesFloat(cloud);
 }
 
 }  // namespace pcl_floam

@@ -30,20 +30,37 @@ pcl::PCLHeader toPcl(const MessageHeader& header)
   return result;
 }
 
-std::optional<ScanMessageDecoder> decoderOf(std::string_view type)
+namespace {
+
+/// ROS 2 has /msg/ between package and name.
+std::string ros1Name(std::string_view type)
 {
-  constexpr std::array<std::pair<std::string_view, ScanMessageDecoder>, 4> kDecoders{
-      {{"sensor_msgs/PointCloud2", decodePointCloud2},
-       {"livox_ros_driver/CustomMsg", decodeLivoxCustom},
-       {"livox_ros_driver2/CustomMsg", decodeLivoxCustom},
-       {"velodyne_msgs/VelodyneScan", decodeVelodyneScan}}};
-  // ROS 2 has /msg/ between package and name.
   constexpr std::string_view kMiddle = "/msg/";
   std::string name(type);
   const std::size_t middle = name.find(kMiddle);
   if (middle != std::string::npos) {
     name.replace(middle, kMiddle.size(), "/");
   }
+  return name;
+}
+
+constexpr std::string_view kVelodyneScan = "velodyne_msgs/VelodyneScan";
+
+}  // namespace
+
+bool holdsVelodynePackets(std::string_view type)
+{
+  return ros1Name(type) == kVelodyneScan;
+}
+
+std::optional<ScanMessageDecoder> decoderOf(std::string_view type)
+{
+  constexpr std::array<std::pair<std::string_view, ScanMessageDecoder>, 4> kDecoders{
+      {{"sensor_msgs/PointCloud2", decodePointCloud2},
+       {"livox_ros_driver/CustomMsg", decodeLivoxCustom},
+       {"livox_ros_driver2/CustomMsg", decodeLivoxCustom},
+       {kVelodyneScan, decodeVelodyneScan}}};
+  const std::string name = ros1Name(type);
   const auto* found =
       std::find_if(kDecoders.begin(), kDecoders.end(), [&name](const auto& decoder) { return decoder.first == name; });
   return found == kDecoders.end() ? std::nullopt : std::optional<ScanMessageDecoder>(found->second);

@@ -26,9 +26,8 @@ std::vector<StampedPacket> takePackets(MessageReader& message)
     packet.stamp = message.number<std::uint32_t>();
     packet.stamp += 1e-9 * message.number<std::uint32_t>();
     packet.bytes = message.take(kVelodynePacketBytes);
-    std::string problem;
-    if (!isVelodynePacket(packet.bytes, problem) || !problem.empty()) {
-      message.fail("a packet " + (problem.empty() ? "is no data packet of a Velodyne" : problem));
+    if (!isVelodynePacket(packet.bytes)) {
+      message.fail("a packet is no data packet of a Velodyne");
     }
   }
   return packets;
@@ -36,7 +35,7 @@ std::vector<StampedPacket> takePackets(MessageReader& message)
 
 }  // namespace
 
-void decodeVelodyneScan(MessageReader& message, pcl::PCLPointCloud2& cloud)
+void decodeVelodyneScan(MessageReader& message, const VelodyneCalibration* calibration, pcl::PCLPointCloud2& cloud)
 {
   const MessageHeader header = takeHeader(message);
   const std::vector<StampedPacket> packets = takePackets(message);
@@ -44,14 +43,15 @@ void decodeVelodyneScan(MessageReader& message, pcl::PCLPointCloud2& cloud)
   for (const StampedPacket& packet : packets) {
     finder.add(VelodynePacket(packet.bytes));
   }
-  if (!finder.problem().empty()) {
-    message.fail("the scan " + finder.problem());
+  const std::string problem = finder.problem(calibration);
+  if (!problem.empty()) {
+    message.refuseKind("the scan " + problem);
   }
   if (!finder.model()) {
     message.fail("too few packets (" + std::to_string(packets.size()) + ") to tell the model of the Velodyne");
   }
   // The driver stamps the turn's end, or its beginning: times are relative to that stamp.
-  VelodyneCloudBuilder builder(*finder.model(), packets.front().stamp - header.stamp, cloud);
+  VelodyneCloudBuilder builder(*finder.model(), packets.front().stamp - header.stamp, calibration, cloud);
   for (const StampedPacket& packet : packets) {
     builder.add({packet.bytes});
   }

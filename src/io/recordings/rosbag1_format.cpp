@@ -213,7 +213,7 @@ private:
     if (bag_.index == 0) {
       throw FileError(file_.path(), end +
                                         "the bag has no index: its recording was not finished, and what followed, if "
-                                        "anything, is missing");
+                                        "anything, is missing; rosbag reindex writes an index");
     }
     if (bag_.chunks != chunks_ || bag_.chunks != infos_) {
       throw FileError(file_.path(), end + "the bag has " + std::to_string(chunks_) + " chunks and an index of " +

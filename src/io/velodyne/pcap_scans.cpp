@@ -58,7 +58,6 @@ public:
   }
 
   VelodyneModelFinder finder;
-  std::string problem;  ///< why its packets are not read
 
 private:
   /// By the sensor's clock, which begins anew every hour: the computer's tells which hour it is, and the first time.
@@ -116,14 +115,11 @@ struct Survey {
   void take(const Datagram& datagram)
   {
     ++datagrams;
-    std::string problem;
-    if (!isVelodynePacket(datagram.data, problem)) {
+    if (!isVelodynePacket(datagram.data)) {
       other = other.empty() ? otherLidar(datagram.data) : other;
       return;
     }
-    Sender& sender = senders[datagram.sender];
-    sender.problem = sender.problem.empty() ? problem : sender.problem;
-    sender.add(datagram);
+    senders[datagram.sender].add(datagram);
   }
 
   std::map<std::string, Sender> senders;
@@ -135,12 +131,13 @@ struct Survey {
 /// The turns of one sender's sensor.
 class PcapScans : public ScanReader {
 public:
-  PcapScans(std::filesystem::path file, std::string sender, const Sender& sent, VelodyneModel model,
-            std::optional<FileError> damage)
+  PcapScans(std::filesystem::path file, std::string sender, const Sender& sent,
+            std::shared_ptr<const VelodyneCalibration> calibration, std::optional<FileError> damage)
       : file_(std::move(file)),
         packets_(file_),
         sender_(std::move(sender)),
-        model_(model),
+        model_(sent.finder.model().value()),
+        calibration_(std::move(calibration)),
         turns_(sent.turns()),
         damage_(std::move(damage))
   {
@@ -160,7 +157,7 @@ public:
     const Turn& begin = turnAt(i);
     const Turn& end = turns_[i + 1];
     packets_.seek(begin.place, begin.number);
-    VelodyneCloudBuilder builder(model_, 0.0, cloud);
+    VelodyneCloudBuilder builder(model_, 0.0, calibration_.get(), cloud);
     try {
       Datagram datagram;
       while (packets_.next(datagram) && addPacket(datagram, begin, end, builder)) {
@@ -191,8 +188,7 @@ private:
   /// \return whether the turn goes on after this packet
   bool addPacket(const Datagram& datagram, const Turn& begin, const Turn& end, VelodyneCloudBuilder& builder) const
   {
-    std::string problem;
-    if (datagram.sender != sender_ || !isVelodynePacket(datagram.data, problem)) {
+    if (datagram.sender != sender_ || !isVelodynePacket(datagram.data)) {
       return true;
     }
     const bool last = datagram.place == end.place;
@@ -204,7 +200,8 @@ private:
   UdpPackets packets_;
   std::string sender_;
   VelodyneModel model_;
-  std::vector<Turn> turns_;  ///< and where the last ends
+  std::shared_ptr<const VelodyneCalibration> calibration_;  ///< of an HDL-64
+  std::vector<Turn> turns_;                                 ///< and where the last ends
   std::optional<FileError> damage_;
 };
 
@@ -244,26 +241,27 @@ bool isCapture(std::string_view begin)
   return std::find(std::begin(kMagics), std::end(kMagics), begin.substr(0, 4)) != std::end(kMagics);
 }
 
-std::unique_ptr<ScanReader> openCapture(const std::filesystem::path& file, const std::string& topic)
+std::unique_ptr<ScanReader> openCapture(const std::filesystem::path& file, const std::string& topic,
+                                        std::shared_ptr<const VelodyneCalibration> calibration)
 {
   const Survey survey(file);
   const std::string name = nameOf(survey, file, topic);
   const Sender& sender = survey.senders.at(name);
-  const std::string problem = sender.problem.empty() ? sender.finder.problem() : sender.problem;
+  const std::string problem = sender.finder.problem(calibration.get());
   if (!problem.empty()) {
     throw FileError(file, "what " + name + " sent " + problem);
   }
   if (!sender.finder.model()) {
     throw FileError(file, "has too few packets to tell the model of the Velodyne");
   }
-  return std::make_unique<PcapScans>(file, name, sender, *sender.finder.model(), survey.damage);
+  return std::make_unique<PcapScans>(file, name, sender, std::move(calibration), survey.damage);
 }
 
 std::vector<ScanTopic> sendersIn(const std::filesystem::path& file)
 {
   std::vector<ScanTopic> topics;
   for (const auto& [name, sender] : Survey(file).senders) {
-    topics.push_back({name, "Velodyne packets", sender.turns().size() - 1, sender.problem.empty()});
+    topics.push_back({name, "Velodyne packets", sender.turns().size() - 1, true});
   }
   return topics;
 }

@@ -106,28 +106,34 @@ constexpr std::uint32_t kVelodynePointBytes = 22;
 
 }  // namespace
 
-bool isVelodynePacket(std::string_view bytes, std::string& problem)
+bool isVelodynePacket(std::string_view bytes)
 {
   if (bytes.size() != kVelodynePacketBytes) {
     return false;
   }
   const VelodynePacket packet(bytes);
-  bool lower = false;
   for (std::size_t block = 0; block < kVelodyneBlocks; ++block) {
-    lower |= packet.flag(block) == kLowerBlockFlag;
     if (packet.flag(block) != kBlockFlag && packet.flag(block) != kLowerBlockFlag) {
       return false;
     }
   }
-  problem = lower ? "is of a Velodyne HDL-64, whose points need its sensor's own calibration: not read; convert it to "
-                    "point clouds with its driver"
-                  : "";
   return true;
+}
+
+bool VelodynePacket::isHdl64() const
+{
+  for (std::size_t block = 0; block < kVelodyneBlocks; ++block) {
+    if (flag(block) == kLowerBlockFlag) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void VelodyneModelFinder::add(const VelodynePacket& packet)
 {
   constexpr std::size_t kEnough = 256;
+  is_hdl64_ |= packet.isHdl64();
   product_ = packet.product();
   if (last_ && packet.microseconds() > *last_ && durations_.size() < kEnough) {
     durations_.push_back((packet.microseconds() - *last_) * (packet.isDual() ? 2U : 1U));
@@ -137,6 +143,9 @@ void VelodyneModelFinder::add(const VelodynePacket& packet)
 
 std::optional<VelodyneModel> VelodyneModelFinder::model() const
 {
+  if (is_hdl64_) {
+    return VelodyneModel::hdl64e;
+  }
   constexpr std::size_t kFew = 8;
   if (durations_.size() < kFew) {
     return std::nullopt;
@@ -149,8 +158,16 @@ std::optional<VelodyneModel> VelodyneModelFinder::model() const
   return median > kBetweenModels ? VelodyneModel::vlp16 : VelodyneModel::hdl32e;
 }
 
-std::string VelodyneModelFinder::problem() const
+std::string VelodyneModelFinder::problem(const VelodyneCalibration* calibration) const
 {
+  if (is_hdl64_) {
+    return calibration != nullptr ? ""
+                                  : "is of a Velodyne HDL-64, whose points need its sensor's own calibration: name its "
+                                    "db.xml, or the YAML made of it, with --calibration (or ScanSourceOptions)";
+  }
+  if (calibration != nullptr) {
+    return "is not of a Velodyne HDL-64, the only model that needs a calibration: leave --calibration out";
+  }
   constexpr std::uint8_t kVlp32 = 0x28;
   constexpr std::uint8_t kVls128 = 0xA1;
   if (product_ == kVlp32 || product_ == kVls128) {
@@ -160,8 +177,9 @@ std::string VelodyneModelFinder::problem() const
   return "";
 }
 
-VelodyneCloudBuilder::VelodyneCloudBuilder(VelodyneModel model, double time_origin, pcl::PCLPointCloud2& cloud)
-    : model_(model), time_origin_(time_origin), cloud_(cloud)
+VelodyneCloudBuilder::VelodyneCloudBuilder(VelodyneModel model, double time_origin,
+                                           const VelodyneCalibration* calibration, pcl::PCLPointCloud2& cloud)
+    : model_(model), time_origin_(time_origin), calibration_(calibration), cloud_(cloud)
 {
   using pcl::PCLPointField;
   cloud.fields.clear();
@@ -181,6 +199,11 @@ void VelodyneCloudBuilder::add(const VelodyneBlocks& blocks)
   const std::int64_t since = (static_cast<std::int64_t>(microseconds) - *first_microseconds_ +
                               static_cast<std::int64_t>(kMicrosecondsPerHour)) %
                              static_cast<std::int64_t>(kMicrosecondsPerHour);
+  const double packet_time = time_origin_ + 1e-6 * static_cast<double>(since);
+  if (model_ == VelodyneModel::hdl64e) {
+    addHdl64(packet, blocks, packet_time);
+    return;
+  }
   const Firing& firing = firingOf(model_);
   const double block_period = firing.firing_period * static_cast<double>(firing.per_block);
   const std::size_t step = packet.isDual() ? 2 : 1;
@@ -193,9 +216,38 @@ void VelodyneCloudBuilder::add(const VelodyneBlocks& blocks)
   // Of each pair of blocks with two returns, the first holds the last return.
   for (std::size_t block = blocks.begin - blocks.begin % step; block < blocks.end; block += step) {
     const std::size_t fired = block / step;
-    const double time = time_origin_ + 1e-6 * static_cast<double>(since) + static_cast<double>(fired) * block_period;
-    addBlock(packet, block, time, degrees_per_second_);
+    addBlock(packet, block, packet_time + static_cast<double>(fired) * block_period, degrees_per_second_);
   }
+}
+
+/// All lasers of a firing are given its time and azimuth, as the makers' calibration takes them: within the 48 us until
+/// the next a car drives 1.5 mm.
+void VelodyneCloudBuilder::addHdl64(const VelodynePacket& packet, const VelodyneBlocks& blocks, double time)
+{
+  constexpr double kFiringPeriod = 48e-6;      // s; 3472 packets a second of six firings
+  constexpr std::size_t kBlocksPerFiring = 2;  // upper and lower lasers
+  constexpr double kRadians = M_PI / (0.5 * kHundredths);
+  for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
+    const std::size_t first = packet.flag(block) == kLowerBlockFlag ? kReturns : 0;
+    const std::size_t firing = block / kBlocksPerFiring;
+    const double fired = time + kFiringPeriod * static_cast<double>(firing);
+    for (std::size_t i = 0; i < kReturns && packet.azimuth(block) < kHundredths; ++i) {
+      if (packet.distance(block, i) != 0) {
+        const LaserCorrection& laser = calibration_->lasers[first + i];
+        const double distance = calibration_->distance_unit * packet.distance(block, i);
+        addPoint(calibratedPoint(laser, kRadians * packet.azimuth(block), distance), packet.reflectivity(block, i),
+                 fired, laser.ring);
+      }
+    }
+  }
+}
+
+void VelodyneCloudBuilder::addPoint(const LaserPoint& point, double intensity, double time, std::uint16_t ring)
+{
+  const CloudPoint bytes_of{static_cast<float>(point.x),   static_cast<float>(point.y), static_cast<float>(point.z),
+                            static_cast<float>(intensity), static_cast<float>(time),    ring};
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(&bytes_of);
+  cloud_.data.insert(cloud_.data.end(), bytes, bytes + kVelodynePointBytes);
 }
 
 void VelodyneCloudBuilder::addBlock(const VelodynePacket& packet, std::size_t block, double time, double turn)
@@ -215,16 +267,11 @@ void VelodyneCloudBuilder::addBlock(const VelodynePacket& packet, std::size_t bl
     const long azimuth = packet.azimuth(block) + std::lround(100.0 * turn * delay);
     const Direction& direction = directions()[static_cast<std::size_t>(azimuth % kHundredths)];
     const double range = kDistanceUnit * packet.distance(block, i);
-    const auto flat = static_cast<float>(range * std::cos(laser.elevation));
+    const double flat = range * std::cos(laser.elevation);
     // Velodyne's azimuth turns clockwise from its forward axis.
-    const CloudPoint point{flat * direction.cosine,
-                           -flat * direction.sine,
-                           static_cast<float>(range * std::sin(laser.elevation) + laser.height),
-                           static_cast<float>(packet.reflectivity(block, i)),
-                           static_cast<float>(time + delay),
-                           laser.ring};
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(&point);
-    cloud_.data.insert(cloud_.data.end(), bytes, bytes + kVelodynePointBytes);
+    addPoint({flat * static_cast<double>(direction.cosine), -flat * static_cast<double>(direction.sine),
+              range * std::sin(laser.elevation) + laser.height},
+             packet.reflectivity(block, i), time + delay, laser.ring);
   }
 }
 

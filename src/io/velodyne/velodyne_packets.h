@@ -1,6 +1,8 @@
 /// \file velodyne_packets.h
-/// Data packets of Velodyne's VLP-16 and HDL-32E, as their manuals have them.
+/// Data packets of Velodyne's VLP-16, HDL-32E and HDL-64E (S2, S3), as their manuals have them.
 #pragma once
+
+#include "io/velodyne/velodyne_calibration.h"
 
 #include <pcl/PCLPointCloud2.h>
 
@@ -17,7 +19,7 @@ inline constexpr std::size_t kVelodynePacketBytes = 1206;
 inline constexpr std::size_t kVelodyneBlocks = 12;                 ///< of a packet
 inline constexpr std::uint64_t kMicrosecondsPerHour = 3600000000;  ///< after which a sensor's time begins anew
 
-enum class VelodyneModel : std::uint8_t { vlp16, hdl32e };
+enum class VelodyneModel : std::uint8_t { vlp16, hdl32e, hdl64e };
 
 /// A packet, seen but not copied.
 class VelodynePacket {
@@ -41,7 +43,9 @@ public:
   }
   [[nodiscard]] std::uint8_t returnMode() const { return byte(kTail + 4); }
   [[nodiscard]] std::uint8_t product() const { return byte(kTail + 5); }
-  [[nodiscard]] bool isDual() const { return returnMode() == 0x39; }
+  [[nodiscard]] bool isDual() const { return returnMode() == 0x39 && !isHdl64(); }
+  /// Of blocks of lasers 0 to 31 and 32 to 63. Its last bytes tell of the sensor's state, in turns.
+  [[nodiscard]] bool isHdl64() const;
 
 private:
   static constexpr std::size_t kBlockBytes = 100;
@@ -56,23 +60,24 @@ private:
   std::string_view bytes_;
 };
 
-/// Whether these are a data packet of a Velodyne; what is wrong with them in \p problem if they are one that is not
-/// read.
-[[nodiscard]] bool isVelodynePacket(std::string_view bytes, std::string& problem);
+/// Whether these are a data packet of a Velodyne.
+[[nodiscard]] bool isVelodynePacket(std::string_view bytes);
 
-/// Tells the model by how long a packet takes, which the bytes that should name it do not always do right.
+/// Tells the model by its blocks and by how long a packet takes: the bytes that should name it do not always do right.
 class VelodyneModelFinder {
 public:
   void add(const VelodynePacket& packet);
   /// Nothing until some packets were seen.
   [[nodiscard]] std::optional<VelodyneModel> model() const;
-  /// What is wrong if it is a model that is not read; empty otherwise.
-  [[nodiscard]] std::string problem() const;
+  /// What is wrong if it is a model that is not read, or not with this calibration (null: there is none); empty
+  /// otherwise.
+  [[nodiscard]] std::string problem(const VelodyneCalibration* calibration) const;
 
 private:
   std::vector<std::uint32_t> durations_;  ///< us a packet, of one return each
   std::optional<std::uint32_t> last_;
   std::uint8_t product_ = 0;
+  bool is_hdl64_ = false;
 };
 
 /// Some blocks of a packet.
@@ -84,21 +89,26 @@ struct VelodyneBlocks {
 
 /// Turns packets into points: x forward, y left, z up, in m; intensity; ring from below; time in s.
 ///
-/// Of two returns the last is taken: the first may be dust, rain or a window pane.
+/// Of two returns the last is taken: the first may be dust, rain or a window pane. Of an HDL-64's both are.
 class VelodyneCloudBuilder {
 public:
   /// \param time_origin s; the time of the first packet in the clouds' field `time`
-  VelodyneCloudBuilder(VelodyneModel model, double time_origin, pcl::PCLPointCloud2& cloud);
+  /// \param calibration of an HDL-64; null for the others
+  VelodyneCloudBuilder(VelodyneModel model, double time_origin, const VelodyneCalibration* calibration,
+                       pcl::PCLPointCloud2& cloud);
 
   void add(const VelodyneBlocks& blocks);
   /// To be called once, after all packets.
   void finish();
 
 private:
+  void addHdl64(const VelodynePacket& packet, const VelodyneBlocks& blocks, double time);
   void addBlock(const VelodynePacket& packet, std::size_t block, double time, double turn);
+  void addPoint(const LaserPoint& point, double intensity, double time, std::uint16_t ring);
 
   VelodyneModel model_;
   double time_origin_;
+  const VelodyneCalibration* calibration_;
   pcl::PCLPointCloud2& cloud_;
   std::optional<std::uint32_t> first_microseconds_;
   double degrees_per_second_ = 3600.0;  ///< the latest that could be measured

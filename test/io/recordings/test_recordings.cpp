@@ -80,6 +80,18 @@ TEST_F(Recordings, BigEndianPointsAreTurnedRound)
   expectSixNumbers(readOne(kCloud, "cdr", pointCloud2(shape)));
 }
 
+TEST_F(Recordings, Float64CoordinatesAreReadAsFloat)
+{
+  for (const bool big_endian : {false, true}) {
+    CloudShape shape{2, 1, 26, 52, 8, big_endian, true, ""};  // 26 bytes: of no use to any processor's alignment
+    for (int i = 1; i <= 6; ++i) {
+      const std::string bytes = bytesOf(static_cast<double>(i));
+      shape.data += (big_endian ? std::string(bytes.rbegin(), bytes.rend()) : bytes) + (i % 3 == 0 ? "##" : "");
+    }
+    expectSixNumbers(readOne(kCloud, "cdr", pointCloud2(shape)));
+  }
+}
+
 TEST_F(Recordings, BytesBetweenRowsAreTakenOut)
 {
   CloudShape shape;

@@ -7,6 +7,7 @@
 #include <pcl/impl/pcl_base.hpp>
 
 #include <stdexcept>
+#include <string>
 
 namespace pcl_floam {
 
@@ -29,6 +30,17 @@ void MotionCompensation<PointT>::setAcceleration(const Vector6& acceleration)
 }
 
 template <typename PointT>
+void MotionCompensation<PointT>::checkIndices() const
+{
+  for (const auto index : *this->indices_) {
+    if (index < 0 || static_cast<std::size_t>(index) >= this->input_->size()) {
+      throw std::invalid_argument("motion compensation: index " + std::to_string(index) + " is none of the cloud's " +
+                                  std::to_string(this->input_->size()) + " points");
+    }
+  }
+}
+
+template <typename PointT>
 void MotionCompensation<PointT>::applyFilter(PointCloud& output)
 {
   const CloudView cloud = viewOf(*this->input_);
@@ -42,6 +54,7 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
   if (this->fake_indices_ || !this->indices_) {
     output = *this->input_;
   } else {
+    checkIndices();
     pcl::copyPointCloud(*this->input_, *this->indices_, output);
   }
   // Without an acceleration, the velocity of the sweep's middle is that of all instants.
