@@ -122,6 +122,7 @@ void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* la
 {
   std::array<Place, kAtOnce> place;
   std::array<std::uint32_t, kAtOnce> laser{};
+  std::array<std::uint32_t, kAtOnce> cell{};
   for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
     std::size_t n = 0;
     for (std::size_t i = begin; i < std::min(count, begin + kAtOnce); ++i) {
@@ -131,7 +132,19 @@ void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* la
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      insert(place[i], table_.find(place[i].key.packed(0)), laser[i]);
+      cell[i] = table_.find(place[i].key.packed(0));
+      if (cell[i] != 0) {
+        prefetch(&cells_[cell[i]], sizeof(Cell));
+        prefetch(&contents_[cell[i]].child[0], sizeof(std::uint32_t));
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (cell[i] != 0 && cells_[cell[i]].count < kPointsPerLeaf) {
+        prefetch(&leaves_[contents_[cell[i]].child[0]], sizeof(Leaf));
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      insert(place[i], cell[i] != 0 ? cell[i] : table_.find(place[i].key.packed(0)), laser[i]);
     }
   }
 }
