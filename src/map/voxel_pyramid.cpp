@@ -290,13 +290,16 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
 
 void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
 {
+  constexpr std::size_t kLanes = 4;  // a register's: whole ones are worked out
+  static_assert(kPointsPerLeaf % kLanes == 0, "a leaf fills registers");
   std::array<float, kPointsPerLeaf> squared;
-  const std::size_t lanes = (leaf.count + 3U) & ~3U;  // whole registers
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const float x = leaf.x[i] - offset.x();
-    const float y = leaf.y[i] - offset.y();
-    const float z = leaf.z[i] - offset.z();
-    squared[i] = x * x + y * y + z * z;
+  for (std::size_t i = 0; i < leaf.count; i += kLanes) {
+    for (std::size_t lane = i; lane < i + kLanes; ++lane) {
+      const float x = leaf.x[lane] - offset.x();
+      const float y = leaf.y[lane] - offset.y();
+      const float z = leaf.z[lane] - offset.z();
+      squared[lane] = x * x + y * y + z * z;
+    }
   }
   for (std::size_t i = 0; i < leaf.count; ++i) {
     if (squared[i] < nearest.squared) {
