@@ -9,13 +9,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// Which of its parent's eight children a cell is.
-unsigned octantOf(const VoxelKey& key)
-{
-  return static_cast<unsigned>(key.x & 1) | static_cast<unsigned>(key.y & 1) << 1U |
-         static_cast<unsigned>(key.z & 1) << 2U;
-}
-
 /// Which of a cell's eight children holds an offset from its centre.
 unsigned octantOf(const Eigen::Vector3f& offset)
 {
@@ -26,14 +19,6 @@ unsigned octantOf(const Eigen::Vector3f& offset)
 Eigen::Vector3f towards(unsigned octant)
 {
   return {(octant & 1U) != 0U ? 1.0F : -1.0F, (octant & 2U) != 0U ? 1.0F : -1.0F, (octant & 4U) != 0U ? 1.0F : -1.0F};
-}
-
-VoxelKey childOf(const VoxelKey& key, unsigned octant)
-{
-  const auto half = [octant](std::int32_t v, unsigned bit) {
-    return 2 * v + static_cast<std::int32_t>((octant >> bit) & 1U);
-  };
-  return {half(key.x, 0), half(key.y, 1), half(key.z, 2)};
 }
 
 /// Places that are looked up side by side.
@@ -78,43 +63,10 @@ Eigen::Vector3f VoxelPyramid::centerOf(const Place& place, int level) const
   return (sideOf(level) * cells - Eigen::Vector3d::Constant(0.5 * sideOf(kLevels - 1))).cast<float>();
 }
 
-VoxelPyramid::Found VoxelPyramid::finestAt(const VoxelKey& key) const
-{
-  Found found;
-  for (; found.level < kLevels; ++found.level) {
-    found.cell = table_.find(key.above(found.level).packed(found.level));
-    if (found.cell != 0) {
-      break;
-    }
-  }
-  return found;
-}
-
-/// With all above it that are not there yet.
-std::uint32_t VoxelPyramid::makeCell(const VoxelKey& finest, int level)
-{
-  const VoxelKey key = finest.above(level);
-  const std::uint32_t cell = cells_.take();
-  contents_.take();  // of the same number: both pools are asked alike
-  if (level == kLevels - 1) {
-    blocks_.push_back({key, cell});
-  } else {
-    std::uint32_t parent = table_.find(finest.above(level + 1).packed(level + 1));
-    parent = parent == 0 ? makeCell(finest, level + 1) : parent;
-    cells_[cell].parent = parent;
-    contents_[parent].child[octantOf(key)] = cell;
-  }
-  if (level == 0) {
-    contents_[cell].child[0] = leaves_.take();
-  }
-  table_.insert(key.packed(level), cell);
-  return cell;
-}
-
 bool VoxelPyramid::insert(const Eigen::Vector3d& point, std::uint32_t laser)
 {
   Place place;
-  return findPlace(point, place) && insert(place, table_.find(place.key.packed(0)), laser);
+  return findPlace(point, place) && insert(place, cells_.find(place.key, 0), laser);
 }
 
 /// Some at a time, as in \ref find.
@@ -127,24 +79,24 @@ void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* la
     std::size_t n = 0;
     for (std::size_t i = begin; i < std::min(count, begin + kAtOnce); ++i) {
       if (findPlace(places[i], place[n])) {
-        table_.expect(place[n].key.packed(0));
+        cells_.expect(place[n].key);
         laser[n++] = lasers[i];
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      cell[i] = table_.find(place[i].key.packed(0));
+      cell[i] = cells_.find(place[i].key, 0);
       if (cell[i] != 0) {
-        prefetch(&cells_[cell[i]], sizeof(Cell));
-        prefetch(&contents_[cell[i]].child[0], sizeof(std::uint32_t));
+        prefetch(&cells_[cell[i]], sizeof(VoxelCells::Cell));
+        prefetch(&cells_.content(cell[i]).child[0], sizeof(std::uint32_t));
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
       if (cell[i] != 0 && cells_[cell[i]].count < kPointsPerLeaf) {
-        prefetch(&leaves_[contents_[cell[i]].child[0]], sizeof(Leaf));
+        prefetch(&cells_.leaf(cell[i]), sizeof(Leaf));
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      insert(place[i], cell[i] != 0 ? cell[i] : table_.find(place[i].key.packed(0)), laser[i]);
+      insert(place[i], cell[i] != 0 ? cell[i] : cells_.find(place[i].key, 0), laser[i]);
     }
   }
 }
@@ -153,48 +105,37 @@ void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* la
 bool VoxelPyramid::insert(const Place& place, std::uint32_t cell, std::uint32_t laser)
 {
   if (cell == 0) {
-    cell = makeCell(place.key, 0);
+    cell = cells_.make(place.key);
   }
   if (cells_[cell].count >= kPointsPerLeaf) {
     return false;
   }
-  Leaf& leaf = leaves_[contents_[cell].child[0]];
-  const Eigen::Vector3f p = place.offset.cast<float>();
+  const Eigen::Vector3f point = place.offset.cast<float>();
   Nearest nearest;
-  findNearest(leaf, p, nearest);
+  findNearest(cells_.leaf(cell), point, nearest);
   if (nearest.squared < squared_spacing_) {
     return false;
   }
-  leaf.x[leaf.count] = p.x();
-  leaf.y[leaf.count] = p.y();
-  leaf.z[leaf.count] = p.z();
-  ++leaf.count;
+  cells_.add(cell, point, laser, keyframe_);
   ++points_;
-  for (; cell != 0; cell = cells_[cell].parent) {
-    contents_[cell].sums.add(static_cast<double>(p.x()), static_cast<double>(p.y()), static_cast<double>(p.z()), laser);
-    Cell& around = cells_[cell];
-    around.support.add(laser, keyframe_);
-    around.count = static_cast<std::uint16_t>(std::min<std::uint32_t>(contents_[cell].sums.count, UINT16_MAX));
-    around.state.store(kStale, std::memory_order_relaxed);
-  }
   return true;
 }
 
 /// A thread that finds a fit in the making works it out for itself rather than wait.
 CellFit VoxelPyramid::fitOf(std::uint32_t number) const
 {
-  const Cell& cell = cells_[number];
-  const CellContent& content = contents_[number];
+  const VoxelCells::Cell& cell = cells_[number];
+  const VoxelCells::Content& content = cells_.content(number);
   std::uint8_t state = cell.state.load(std::memory_order_acquire);
-  if (state >= kKnown) {
-    const auto kind = static_cast<SurfaceKind>(state - kKnown);
+  if (state >= VoxelCells::kKnown) {
+    const auto kind = static_cast<SurfaceKind>(state - VoxelCells::kKnown);
     return {kind, cell.shape, kind == SurfaceKind::point ? content.axes : std::array<float, 9>()};
   }
   const CellFit own = pcl_floam::fitOf(content.sums, shapes_);
-  if (state == kStale && cell.state.compare_exchange_strong(state, kBeingMade)) {
+  if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
     cell.shape = own.shape;
     content.axes = own.axes;
-    cell.state.store(static_cast<std::uint8_t>(kKnown + static_cast<std::uint8_t>(own.kind)),
+    cell.state.store(static_cast<std::uint8_t>(VoxelCells::kKnown + static_cast<std::uint8_t>(own.kind)),
                      std::memory_order_release);
   }
   return own;
@@ -212,7 +153,7 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
 {
   surface.kind = SurfaceKind::unknown;
   for (; found.cell != 0; found.cell = cells_[found.cell].parent, ++found.level) {
-    const Cell& cell = cells_[found.cell];
+    const VoxelCells::Cell& cell = cells_[found.cell];
     if (shapes_ != SurfaceShapes::lines && !cell.support.hasTwoBesides(laser, keyframe_)) {
       continue;
     }
@@ -254,7 +195,7 @@ Eigen::Matrix3d VoxelPyramid::feltIn(Found found, const CellFit& fit) const
   constexpr double kChance = 1.25;  // as few points vary by chance
   const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix3f>(fit.axes.data()).cast<double>();
   const auto along = [&](std::uint32_t cell, int level) {
-    return Eigen::Vector3d((axes.transpose() * contents_[cell].sums.filled(sideOf(level)) * axes).diagonal());
+    return Eigen::Vector3d((axes.transpose() * cells_.content(cell).sums.filled(sideOf(level)) * axes).diagonal());
   };
   Eigen::Vector3d filled = along(found.cell, found.level);
   const std::uint32_t parent = cells_[found.cell].parent;
@@ -274,9 +215,9 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
   if (outside.squaredNorm() >= nearest.squared) {
     return;
   }
-  const std::array<std::uint32_t, 8>& children = contents_[found.cell].child;
+  const std::array<std::uint32_t, 8>& children = cells_.content(found.cell).child;
   if (found.level == 0) {
-    findNearest(leaves_[children[0]], offset, nearest);
+    findNearest(cells_.leaf(found.cell), offset, nearest);
     return;
   }
   const unsigned first = octantOf(Eigen::Vector3f(offset - center));
@@ -290,11 +231,11 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
 
 void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
 {
-  constexpr std::size_t kLanes = 4;  // a register's: whole ones are worked out
-  static_assert(kPointsPerLeaf % kLanes == 0, "a leaf fills registers");
+  constexpr std::size_t kInRegister = 4;  // whole ones are worked out
+  static_assert(kPointsPerLeaf % kInRegister == 0, "a leaf fills registers");
   std::array<float, kPointsPerLeaf> squared;
-  for (std::size_t i = 0; i < leaf.count; i += kLanes) {
-    for (std::size_t lane = i; lane < i + kLanes; ++lane) {
+  for (std::size_t i = 0; i < leaf.count; i += kInRegister) {
+    for (std::size_t lane = i; lane < i + kInRegister; ++lane) {
       const float x = leaf.x[lane] - offset.x();
       const float y = leaf.y[lane] - offset.y();
       const float z = leaf.z[lane] - offset.z();
@@ -320,13 +261,13 @@ void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lase
     for (std::size_t i = 0; i < n; ++i) {
       is_there[i] = findPlace(places[begin + i], place[i]);
       if (is_there[i]) {
-        table_.expect(place[i].key.packed(0));
+        cells_.expect(place[i].key);
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      found[i] = is_there[i] ? finestAt(place[i].key) : Found();
+      found[i] = is_there[i] ? cells_.finestAt(place[i].key) : Found();
       if (found[i].cell != 0) {
-        prefetch(&cells_[found[i].cell], sizeof(Cell));
+        prefetch(&cells_[found[i].cell], sizeof(VoxelCells::Cell));
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
@@ -335,40 +276,15 @@ void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lase
   }
 }
 
-void VoxelPyramid::release(std::uint32_t number, const VoxelKey& key, int level)
-{
-  const std::array<std::uint32_t, 8>& children = contents_[number].child;
-  if (level == 0) {
-    points_ -= leaves_[children[0]].count;
-    leaves_.release(children[0]);
-  } else {
-    for (unsigned i = 0; i < 8; ++i) {
-      if (children[i] != 0) {
-        release(children[i], childOf(key, i), level - 1);
-      }
-    }
-  }
-  table_.erase(key.packed(level));
-  cells_.release(number);
-  contents_.release(number);
-}
-
 void VoxelPyramid::crop(const Eigen::Vector3d& center, double radius)
 {
-  const auto is_far = [&](const Block& block) { return (centerOfBlock(block.key) - center).norm() > radius; };
-  const auto far = std::stable_partition(blocks_.begin(), blocks_.end(), [&](const Block& b) { return !is_far(b); });
-  std::for_each(far, blocks_.end(), [&](const Block& block) { release(block.root, block.key, kLevels - 1); });
-  blocks_.erase(far, blocks_.end());
+  points_ -= cells_.drop([&](const VoxelKey& block) { return (centerOfBlock(block) - center).norm() > radius; });
 }
 
 void VoxelPyramid::clear()
 {
   points_ = 0;
   cells_.clear();
-  contents_.clear();
-  leaves_.clear();
-  table_.clear();
-  blocks_.clear();
 }
 
 }  // namespace pcl_floam

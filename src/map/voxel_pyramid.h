@@ -2,18 +2,14 @@
 /// A pyramid of voxels with running sums: shapes at every scale, and which lasers saw them.
 #pragma once
 
-#include "map/chunked_pool.h"
-#include "map/laser_support.h"
 #include "map/surface_fit.h"
-#include "map/voxel_table.h"
+#include "map/voxel_cells.h"
 
 #include <pcl_floam/map/surface.h>
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -22,8 +18,8 @@ namespace pcl_floam {
 /// lies in one cache line, all else beside it.
 class VoxelPyramid : public SurfaceSearch {
 public:
-  static constexpr int kLevels = 5;
-  static constexpr int kPointsPerLeaf = 20;
+  static constexpr int kLevels = VoxelCells::kLevels;
+  static constexpr std::size_t kPointsPerLeaf = VoxelCells::kPointsPerLeaf;
 
   /// \param side m, of the finest cells
   explicit VoxelPyramid(double side, SurfaceShapes shapes = SurfaceShapes::all);
@@ -52,47 +48,6 @@ public:
   void clear();
 
 private:
-  /// What a lookup reads of a cell. Its shape is worked out when it is first asked for, by whichever thread asks.
-  struct alignas(64) Cell {
-    LaserSupport support;
-    std::uint32_t parent = 0;  ///< 0: none, it is a block of the greatest side
-    std::uint16_t count = 0;   ///< of its points, as far as it goes
-    mutable std::atomic<std::uint8_t> state{kStale};
-    mutable CellShape shape;
-
-    Cell() = default;
-    ~Cell() = default;
-    Cell(const Cell& other) : Cell() { *this = other; }
-    Cell& operator=(const Cell& other)
-    {
-      support = other.support;
-      parent = other.parent;
-      count = other.count;
-      shape = other.shape;
-      state.store(other.state.load());
-      return *this;
-    }
-  };
-  static_assert(sizeof(Cell) == 64, "of a cache line's size");
-  /// Of its shape; the kinds of surface follow.
-  enum State : std::uint8_t { kStale, kBeingMade, kKnown };
-
-  /// What else there is to it.
-  struct CellContent {
-    CellSums sums;
-    std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
-    mutable std::array<float, 9> axes{};
-  };
-  /// The points of a finest cell, from the centre of its block, m.
-  struct Leaf {
-    std::array<float, kPointsPerLeaf> x{}, y{}, z{};
-    std::uint32_t count = 0;
-  };
-  struct Block {
-    VoxelKey key;
-    std::uint32_t root = 0;
-  };
-
   /// A place by its finest cell, and from the centre of the block that holds it.
   struct Place {
     VoxelKey key;
@@ -100,11 +55,8 @@ private:
 
     [[nodiscard]] VoxelKey block() const { return key.above(kLevels - 1); }
   };
-  /// A cell around a place.
-  struct Found {
-    std::uint32_t cell = 0;  ///< 0: none
-    int level = 0;
-  };
+  using Found = VoxelCells::Found;
+  using Leaf = VoxelCells::Leaf;
   struct Nearest {
     Eigen::Vector3f place = Eigen::Vector3f::Zero();
     float squared = std::numeric_limits<float>::infinity();
@@ -113,8 +65,6 @@ private:
   bool findPlace(const Eigen::Vector3d& point, Place& place) const;
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
-  [[nodiscard]] Found finestAt(const VoxelKey& key) const;
-  std::uint32_t makeCell(const VoxelKey& finest, int level);
   bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
   CellFit fitOf(std::uint32_t cell) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
@@ -122,7 +72,6 @@ private:
   [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const CellFit& fit) const;
   void findNearest(Found cell, const Eigen::Vector3f& center, const Eigen::Vector3f& offset, Nearest& nearest) const;
   static void findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest);
-  void release(std::uint32_t cell, const VoxelKey& key, int level);
   [[nodiscard]] double sideOf(int level) const { return side_ * (1 << level); }
 
   double side_;
@@ -131,11 +80,7 @@ private:
   SurfaceShapes shapes_;
   std::uint32_t keyframe_ = 0;
   std::size_t points_ = 0;
-  ChunkedPool<Cell> cells_;
-  ChunkedPool<CellContent> contents_;  ///< by the cells' numbers
-  ChunkedPool<Leaf> leaves_;
-  VoxelTable table_;
-  std::vector<Block> blocks_;
+  VoxelCells cells_;
 };
 
 }  // namespace pcl_floam

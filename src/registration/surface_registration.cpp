@@ -20,12 +20,12 @@ constexpr double kFirstLook = 3.0;
 /// The first iterations, which look far, take one point in so many, if there are enough.
 constexpr std::size_t kFirstStride = 4;
 constexpr std::size_t kManyPoints = 800;
+constexpr int kLeastFirst = 2;
+constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose.
 constexpr double kSmallStep = 0.3;
-constexpr int kFewestIterations = 4;
-constexpr int kCoarseIterations = 2;
 
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
@@ -70,8 +70,7 @@ private:
     double look = kFirstLook;
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
-      const bool all =
-          (narrow && i >= kCoarseIterations) || i >= kFewestIterations || problem_.scan.points->size() < kManyPoints;
+      const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);
       sums = accumulate(look, all ? 1 : kFirstStride);
       report.iterations = i + 1;
       const Column12 step = sums.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
