@@ -92,6 +92,8 @@ private:
     const std::string file = (scans_.path(scan).parent_path() / scans_.name(scan)).string();
     if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
       progress_.message(file + ": not tracked: " + report.reason);
+    } else if (report.state == TrackingState::doubtful) {
+      progress_.message(file + ": doubtful: " + report.reason);
     } else if (!report.corrected_poses.empty() && !report.reason.empty()) {
       progress_.message(file + ": only now it is plain how the sensor moved: " +
                         std::to_string(report.corrected_poses.size()) + " poses before are corrected");
@@ -132,7 +134,8 @@ private:
 
 bool RunResult::isComplete() const
 {
-  return unreadable.empty() && count(TrackingState::predicted) == 0 && count(TrackingState::not_started) == 0;
+  return unreadable.empty() && count(TrackingState::doubtful) == 0 && count(TrackingState::predicted) == 0 &&
+         count(TrackingState::not_started) == 0;
 }
 
 ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder)

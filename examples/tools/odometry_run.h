@@ -29,7 +29,7 @@ struct RunResult {
   std::vector<std::size_t> scans;        ///< their numbers in the folder
   std::vector<SE3> poses;                ///< one each
   std::vector<StageTimes> times;         ///< of those that were read
-  std::array<std::size_t, 4> states{};   ///< number of scans by TrackingState
+  std::array<std::size_t, 5> states{};   ///< number of scans by TrackingState
   std::size_t with_weak_directions = 0;  ///< scans that left a direction to the prediction
   std::size_t crowded = 0;               ///< scans of whose features only those that are spread over the scene counted
   std::vector<UnreadableScan> unreadable;

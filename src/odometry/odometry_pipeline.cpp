@@ -15,6 +15,7 @@ const char* toString(TrackingState state)
   switch (state) {
     case TrackingState::initialized: return "initialized";
     case TrackingState::tracked: return "tracked";
+    case TrackingState::doubtful: return "doubtful";
     case TrackingState::predicted: return "predicted";
     case TrackingState::not_started: return "not started";
   }

@@ -64,7 +64,7 @@ struct SurfaceOdometry {
       return predictOnly(toString(report.registration.termination));
     }
     updateMap(cloud);
-    return finish(TrackingState::tracked);
+    return finish(judge());
   }
 
   void beginScan(std::size_t points, std::optional<double> stamp)
@@ -91,6 +91,17 @@ struct SurfaceOdometry {
     report.timing_source = scan.timing.source;
     report.edges = scan.features.edges.size();
     report.planes = scan.features.planes.size();
+  }
+
+  /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
+  TrackingState judge()
+  {
+    constexpr double kLeast = 0.5;
+    if (report.explained >= kLeast || tracker.isOpen()) {
+      return TrackingState::tracked;
+    }
+    report.reason = "the map has no surface for most of the scan: the pose may be wrong";
+    return TrackingState::doubtful;
   }
 
   [[nodiscard]] bool hasEnoughPoints() const
@@ -220,7 +231,7 @@ struct SurfaceOdometry {
     }
     if (state == TrackingState::predicted && tracker.isTracking()) {
       report.covariance = turned(predicted().poseCovariance(), world_T_track);
-    } else if (state == TrackingState::tracked) {
+    } else if (state == TrackingState::tracked || state == TrackingState::doubtful) {
       report.covariance = report.registration.covariance;
     }
     first_poses.give(report.world_T_sensor);

@@ -134,7 +134,8 @@ private:
     result.posterior = posteriorOf(sums);
     report.covariance = result.posterior.topLeftCorner<6, 6>();
     result.velocity = velocity_;
-    result.points = problem_.scan.points->size();
+    result.points =
+        problem_.scan.points->size() + (problem_.edges.points != nullptr ? problem_.edges.points->size() : 0);
   }
 
   [[nodiscard]] Square12 posteriorOf(const SurfaceSums& sums) const

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <thread>
@@ -430,6 +431,31 @@ TEST(Odometry, LocalizesInAMapMadeBefore)
     EXPECT_EQ(same, use == MapUse::frozen);
   }
 }
+
+#ifndef PCL_FLOAM_TEST_FEATURES
+/// In a map of a third of the room, the whole of it is mostly somewhere else.
+TEST(Odometry, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
+{
+  const auto partOf = [](const Cloud& scan, bool whole) {
+    Cloud part;
+    std::copy_if(scan.begin(), scan.end(), std::back_inserter(part.points),
+                 [whole](const PointXYZIRT& p) { return whole || p.y > 2.5F; });
+    part.resize(part.points.size());
+    return part;
+  };
+  Odometry<PointXYZIRT> mapping(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    mapping.track(partOf(sweep(steadyPath, k), false));
+  }
+  for (const bool whole : {false, true}) {
+    Odometry<PointXYZIRT> odometry(defaults());
+    odometry.localizeIn(mapping.map(), SE3(), MapUse::frozen);
+    const OdometryReport& report = odometry.track(partOf(sweep(steadyPath, 0), whole));
+    EXPECT_EQ(report.state, whole ? TrackingState::doubtful : TrackingState::tracked) << report.explained;
+    EXPECT_EQ(report.reason.empty(), !whole);
+  }
+}
+#endif
 
 TEST(Odometry, AMapToLocalizeInMustHoldSomething)
 {

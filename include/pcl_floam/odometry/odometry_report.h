@@ -19,6 +19,7 @@ namespace pcl_floam {
 enum class TrackingState : std::uint8_t {
   initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
   tracked,      ///< registered with the map
+  doubtful,     ///< registered, but the map has no surface for most of the scan: the pose may be wrong (by surfaces)
   predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
   not_started   ///< no usable scan yet: the pose is the initial pose
 };
@@ -55,6 +56,7 @@ struct OdometryReport {
   /// of them could not be registered. Scans of which the spread features could not be registered have all, in between.
   bool crowded = false;
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
+  /// Less than half is `doubtful`.
   double explained = 0.0;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
