@@ -174,12 +174,13 @@ std::vector<Tracker::FirstMotion> Tracker::likeliest(std::vector<FirstMotion> mo
 {
   std::stable_sort(motions.begin(), motions.end(),
                    [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
+  constexpr std::size_t kMostLikely = 8;
   std::vector<FirstMotion> likely;
   for (const FirstMotion& motion : motions) {
     const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const FirstMotion& other) {
       return (motion.velocity - other.velocity).head<3>().norm() < same;
     });
-    if (!is_known && likely.size() < kMostHypotheses) {
+    if (!is_known && likely.size() < kMostLikely) {
       likely.push_back(motion);
     }
   }
