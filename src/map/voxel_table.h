@@ -35,11 +35,10 @@ struct VoxelKey {
 /// The voxel of side 1/\p inverse_side that holds a place. \return false if there is none that integers can name
 inline bool findKey(const Eigen::Vector3d& place, double inverse_side, VoxelKey& key)
 {
-  constexpr double kFarthest =
-      1 << 30;  // sides; makes all coordinates positive, of which the integer part is the floor
-  const Eigen::Vector3d scaled = (place * inverse_side).array() + kFarthest;
-  if (!(scaled.x() > 0.0 && scaled.y() > 0.0 && scaled.z() > 0.0 && scaled.x() < 2.0 * kFarthest - 1.0 &&
-        scaled.y() < 2.0 * kFarthest - 1.0 && scaled.z() < 2.0 * kFarthest - 1.0)) {
+  constexpr double kReach = 1 << 30;  // sides; makes all coordinates positive, of which the integer part is the floor
+  const Eigen::Vector3d scaled = (place * inverse_side).array() + kReach;
+  if (!(scaled.x() > 0.0 && scaled.y() > 0.0 && scaled.z() > 0.0 && scaled.x() < 2.0 * kReach - 1.0 &&
+        scaled.y() < 2.0 * kReach - 1.0 && scaled.z() < 2.0 * kReach - 1.0)) {
     return false;  // what is not a number, too
   }
   constexpr std::int32_t kOrigin = 1 << 30;

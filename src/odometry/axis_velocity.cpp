@@ -10,13 +10,13 @@ namespace {
 
 /// Variance of the acceleration's change within one period, over that of a usual pose: of the first filter, and by how
 /// much it grows from one filter to the next.
-constexpr double kLeastChange = 1e-8;
+constexpr double kLeastAxisChange = 1e-8;
 constexpr double kStep = 10.0;
 
 /// Velocity and acceleration to begin with are as good as ten poses' noise.
 constexpr double kFirstVariance = 100.0;
 
-constexpr double kForgetting = 0.97;  // about 30 scans of memory; on the same recordings 0.95 and 0.99 did as well
+constexpr double kAxisForgetting = 0.97;  // about 30 scans of memory; on the same recordings 0.95 and 0.99 did as well
 
 }  // namespace
 
@@ -35,8 +35,8 @@ void AxisVelocity::observe(const Measurement& measurement, double periods)
   // A poorly known pose does not mean that the sensor moves otherwise: the noise is that of usual poses.
   const double log_variance = std::log(measurement.variance);
   const bool is_first = !(measurements_ > 0.0);
-  log_variance_ = is_first ? log_variance : kForgetting * log_variance_ + (1.0 - kForgetting) * log_variance;
-  double noise_density = kLeastChange * std::exp(log_variance_);
+  log_variance_ = is_first ? log_variance : kAxisForgetting * log_variance_ + (1.0 - kAxisForgetting) * log_variance;
+  double noise_density = kLeastAxisChange * std::exp(log_variance_);
   for (Filter& filter : filters_) {
     if (is_first) {
       filter.covariance.diagonal() = measurement.variance * Eigen::Vector3d(1.0, kFirstVariance, kFirstVariance);
@@ -47,7 +47,7 @@ void AxisVelocity::observe(const Measurement& measurement, double periods)
     filter.correct(1, measurement.velocity, measurement.velocity_variance);
     noise_density *= kStep;
   }
-  measurements_ = kForgetting * measurements_ + 2.0;
+  measurements_ = kAxisForgetting * measurements_ + 2.0;
   weigh();
 }
 
@@ -80,8 +80,8 @@ void AxisVelocity::Filter::correct(int component, double measured, double varian
 
 void AxisVelocity::Filter::forget()
 {
-  squared_innovations *= kForgetting;
-  log_variances *= kForgetting;
+  squared_innovations *= kAxisForgetting;
+  log_variances *= kAxisForgetting;
 }
 
 /// The filters' mean by their likelihood, given the noise's scale at which each is likeliest.

@@ -140,9 +140,9 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 /// likeliest are told.
 std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
 {
-  constexpr double kNear = 0.5;      // m
-  constexpr double kFar = 2.0;       // m
-  constexpr double kFarthest = 4.0;  // m a period: 40 m/s at ten sweeps a second
+  constexpr double kNear = 0.5;     // m
+  constexpr double kFar = 2.0;      // m
+  constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
   constexpr int kFarRounds = 5;
   const Sweep first = thinned(first_);
   const Sweep second = thinned(sweep);
@@ -159,7 +159,7 @@ std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
   look(Vector6::Zero(), kFar, kFarRounds);
   look(Vector6::Zero(), kNear, 1);
   const Eigen::Vector3d open = leastKnown(information);
-  for (int step = 1; !motions.empty() && step * kNear <= kFarthest * sweep.periods; ++step) {
+  for (int step = 1; !motions.empty() && step * kNear <= kFastest * sweep.periods; ++step) {
     for (const double sign : {1.0, -1.0}) {
       Vector6 velocity = Vector6::Zero();
       velocity.head<3>() = sign * step * kNear / sweep.periods * open;
