@@ -234,8 +234,6 @@ void addCorrespondenceOptions(CLI::App& app, RegistrationParameters& p)
   addNumber(app, "--line-ratio", p.line_ratio, "RATIO", "a line's first eigenvalue to its second, at least");
   addNumber(app, "--plane-ratio", p.plane_ratio, "RATIO", "a plane's second eigenvalue to its third, at least");
   addNumber(app, "--plane-spread", p.plane_spread, "RATIO", "a plane's second eigenvalue to its first, at least");
-  addNumber(app, "--plane-width", p.plane_width, "M",
-            "a plane's points spread by this in its narrower direction,\nat least");
   addNumber(app, "--min-correspondences", p.min_correspondences, "N", "with fewer the pose is predicted");
   addNumber(
       app, "--weak-threshold", p.weak_threshold, "RATIO",

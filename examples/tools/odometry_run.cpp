@@ -39,7 +39,6 @@ public:
     result_.scans.push_back(scan);
     ++result_.states[static_cast<std::size_t>(report.state)];
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
-    result_.crowded += report.crowded ? 1 : 0;
     if (readable_) {
       result_.times.push_back(report.milliseconds);
       tell(scan, report);

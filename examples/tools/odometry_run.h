@@ -31,7 +31,6 @@ struct RunResult {
   std::vector<StageTimes> times;         ///< of those that were read
   std::array<std::size_t, 5> states{};   ///< number of scans by TrackingState
   std::size_t with_weak_directions = 0;  ///< scans that left a direction to the prediction
-  std::size_t crowded = 0;               ///< scans of whose features only those that are spread over the scene counted
   std::vector<UnreadableScan> unreadable;
   OdometryReport last_read;    ///< of the last scan that was read
   std::string output_problem;  ///< why an output could not be written; the run ends with it

@@ -36,7 +36,6 @@ Json scansJson(const RunSummary& summary)
           {"predicted", result.count(TrackingState::predicted)},
           {"not_started", result.count(TrackingState::not_started)},
           {"with_weak_directions", result.with_weak_directions},
-          {"crowded", result.crowded},
           {"unreadable", unreadable}};
 }
 
@@ -121,10 +120,6 @@ std::string describe(const RunSummary& summary)
   if (result.with_weak_directions > 0) {
     text += formatted("\n%-22s in %zu scans: hardly constrained, there the prediction was kept", "weak directions",
                       result.with_weak_directions);
-  }
-  if (result.crowded > 0) {
-    text += formatted("\n%-22s in %zu scans: their poses are those of features spread over the scene", "crowded",
-                      result.crowded);
   }
   text += formatted("\n%-22s median %.1f ms, 95 %% below %.1f ms", "time per scan", total.median, total.p95);
   text += formatted("\n%-22s %.1f m", "path", pathLength(result.poses));

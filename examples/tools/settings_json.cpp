@@ -57,7 +57,6 @@ Json registrationJson(const RegistrationParameters& p)
           {"line_ratio", p.line_ratio},
           {"plane_ratio", p.plane_ratio},
           {"plane_spread", p.plane_spread},
-          {"plane_width_m", p.plane_width},
           {"max_features", p.max_features},
           {"min_correspondences", p.min_correspondences},
           {"weak_threshold", p.weak_threshold},

@@ -19,19 +19,11 @@ void SweepTrajectory::tabulate()
   linear_acceleration_ = pose_.rotation * acceleration_.head<3>() + pose_.translation.cross(angular_acceleration_);
 }
 
-SweepTrajectory SweepTrajectory::perturbed(const Vector6& delta, const Vector6& epsilon) const
+SweepTrajectory SweepTrajectory::perturbed(const Vector6& delta) const
 {
-  const auto cleaned = [](SE3 pose) {
-    pose.rotation = nearestRotation(pose.rotation);
-    return pose;
-  };
-  if (epsilon.isZero(0.0)) {
-    return {cleaned(exp(delta) * pose_), twist_, reference_, acceleration_};
-  }
-  const SE3 start = exp(delta - reference_ * epsilon) * pose_ * exp(-reference_ * twist_);
-  const SE3 end = exp(delta + (1.0 - reference_) * epsilon) * pose_ * exp((1.0 - reference_) * twist_);
-  const Vector6 twist = log(start.inverse() * end);
-  return {cleaned(start * exp(reference_ * twist)), twist, reference_, acceleration_};
+  SE3 pose = exp(delta) * pose_;
+  pose.rotation = nearestRotation(pose.rotation);
+  return {pose, twist_, reference_, acceleration_};
 }
 
 }  // namespace pcl_floam

@@ -11,9 +11,7 @@ namespace pcl_floam {
 
 /// The sensor's poses during one sweep: T(s) = T(r) exp((s - r) xi + (s - r)^2 alpha / 2); without alpha Eq. 3 and 4.
 ///
-/// How a point moves with the unknowns is simple: a perturbation delta of the pose at r and epsilon of the twist, both
-/// on the left (Eq. 11), move the point measured at s as delta + (s - r) epsilon would move a rigid scan. A scan that
-/// moves as one has epsilon = 0.
+/// A perturbation of the pose at r, on the left (Eq. 11), moves all points as it would move a rigid scan.
 class SweepTrajectory {
 public:
   /// \param twist        xi, motion over the sweep
@@ -50,8 +48,8 @@ public:
     return near + rest * (velocity + 0.5 * rest * angular_velocity.cross(velocity));
   }
 
-  /// The trajectory perturbed on the left by \p delta at the reference instant and \p epsilon over the sweep.
-  [[nodiscard]] SweepTrajectory perturbed(const Vector6& delta, const Vector6& epsilon) const;
+  /// The trajectory perturbed on the left by \p delta at the reference instant.
+  [[nodiscard]] SweepTrajectory perturbed(const Vector6& delta) const;
 
 private:
   static constexpr int kSteps = 16;

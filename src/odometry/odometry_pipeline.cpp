@@ -128,7 +128,7 @@ SE3 OdometryPipeline::pose() const
 
 const KeyframeVoxelMap& OdometryPipeline::map() const
 {
-  return impl_->visit([](auto& odometry) -> const KeyframeVoxelMap& { return odometry.map; });
+  return impl_->visit([](auto& odometry) -> const KeyframeVoxelMap& { return odometry.map_building.map(); });
 }
 
 const OdometryParameters& OdometryPipeline::parameters() const

@@ -23,13 +23,18 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   }
 }
 
+void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters& parameters)
+{
+  extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);
+  correctVerticalAngle(parameters.vertical_correction, features);
+}
+
 void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
 {
+  takeFeatures(scan, parameters);
   collectPoints(scan, lines, timing, static_cast<double>(parameters.features.min_range),
                 static_cast<double>(parameters.features.max_range), points);
-  extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);
   correctVerticalAngle(parameters.vertical_correction, points);
-  correctVerticalAngle(parameters.vertical_correction, features);
   line_of_point_.assign(scan.size, 0);
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
@@ -42,6 +47,18 @@ void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& p
     edges.push_back({edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F,
                      line_of_point_[static_cast<std::size_t>(edge.index)], edge.index});
   }
+}
+
+void PreparedScan::describeIn(OdometryReport& report) const
+{
+  report.structure = lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;
+  report.scan_line_failure = lines.failure;
+  report.scan_line_source = lines.source;
+  report.scan_line_confidence = lines.confidence;
+  report.scan_lines = lines.lines();
+  report.timing_source = timing.source;
+  report.edges = features.edges.size();
+  report.planes = features.planes.size();
 }
 
 }  // namespace pcl_floam

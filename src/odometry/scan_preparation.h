@@ -5,6 +5,7 @@
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/odometry/odometry_parameters.h>
+#include <pcl_floam/odometry/odometry_report.h>
 
 #include <vector>
 
@@ -21,7 +22,10 @@ struct PreparedScan {
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
+  void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
+  /// And the features.
   void takePoints(const CloudView& scan, const OdometryParameters& parameters);
+  void describeIn(OdometryReport& report) const;
 
 private:
   std::vector<std::uint32_t> line_of_point_;

@@ -4,12 +4,11 @@
 
 #include "motion/scan_clock.h"
 #include "odometry/first_poses.h"
+#include "odometry/map_building.h"
 #include "odometry/scan_preparation.h"
-#include "odometry/scan_sample.h"
 #include "odometry/stopwatch.h"
 #include "odometry/tracker.h"
 
-#include <pcl_floam/filters/sweep_motion.h>
 #include <pcl_floam/odometry/odometry.h>
 
 #include <optional>
@@ -22,21 +21,18 @@ namespace pcl_floam {
 struct SurfaceOdometry {
   explicit SurfaceOdometry(const OdometryParameters& p)
       : parameters(p),
-        map(p.map),
+        map_building(p),
         clock(p.scan_period),
         tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads})
   {
   }
 
   OdometryParameters parameters;
-  KeyframeVoxelMap map;
+  MapBuilding map_building;
   ScanClock clock;
   Tracker tracker;
   SE3 initial_pose;   ///< of the first scan, at the instant of the parameters
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
-  SE3 world_T_keyframe;
-  int keyframes = 0;
-  std::optional<MapUse> prior_map;  ///< of a map that was there before the first scan
   PreparedScan scan;
   double sweep_fraction = 0.0;          ///< of the last scan that told of it
   double periods = 0.0;                 ///< since the last scan that was registered
@@ -45,7 +41,7 @@ struct SurfaceOdometry {
   OdometryReport report;
   Stopwatch watch;
 
-  const OdometryReport& track(const CloudView& cloud, std::optional<double> stamp)
+  void track(const CloudView& cloud, std::optional<double> stamp)
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
@@ -55,7 +51,7 @@ struct SurfaceOdometry {
     if (!hasEnoughPoints()) {
       return predictOnly("too few points");
     }
-    if (!tracker.hasBegun() && !prior_map) {
+    if (!tracker.hasBegun() && !map_building.hasPrior()) {
       return start();
     }
     sweep_fraction = scan.sweep_fraction;
@@ -64,7 +60,7 @@ struct SurfaceOdometry {
       return predictOnly(toString(report.registration.termination));
     }
     updateMap(cloud);
-    return finish(judge());
+    finish(judge());
   }
 
   void beginScan(std::size_t points, std::optional<double> stamp)
@@ -83,14 +79,7 @@ struct SurfaceOdometry {
     report.milliseconds.scan_lines = watch.lap();
     scan.takePoints(cloud, parameters);
     report.milliseconds.features = watch.lap();
-    report.structure = scan.lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;
-    report.scan_line_failure = scan.lines.failure;
-    report.scan_line_source = scan.lines.source;
-    report.scan_line_confidence = scan.lines.confidence;
-    report.scan_lines = scan.lines.lines();
-    report.timing_source = scan.timing.source;
-    report.edges = scan.features.edges.size();
-    report.planes = scan.features.planes.size();
+    scan.describeIn(report);
   }
 
   /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
@@ -111,7 +100,7 @@ struct SurfaceOdometry {
   }
 
   /// The first scan: its motion is found with the second.
-  const OdometryReport& start()
+  void start()
   {
     if (first_poses.isOpen()) {
       report.reason = "started again, since the first scan was never matched";
@@ -119,11 +108,11 @@ struct SurfaceOdometry {
     tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
     periods = 0.0;
     first_poses.begin();
-    map.clear();
     first_scans = {scan.features};
-    insertFeatures(scan.features, SweepPose{initial_pose, Vector6::Zero()});
+    map_building.clear();
+    report.keyframe = map_building.add(scan.features, {initial_pose}, parameters);
     report.milliseconds.map += watch.lap();
-    return finish(TrackingState::initialized);
+    finish(TrackingState::initialized);
   }
 
   // Motion Estimation, Distortion Compensation, Pose Estimation (Eq. 2 to 14)
@@ -142,11 +131,11 @@ struct SurfaceOdometry {
       return;
     }
     periods = 0.0;
-    if (was_open && !prior_map) {
+    if (was_open && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
       first_poses.add();
     }
-    if (outcome.corrected && !prior_map) {
+    if (outcome.corrected && !map_building.hasPrior()) {
       correctFirstPoses();
     }
   }
@@ -159,68 +148,34 @@ struct SurfaceOdometry {
     if (first_poses.jumped()) {
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
     }
-    map.clear();
-    keyframes = 0;
+    map_building.clear();
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-      const SweepPose pose = inWorld(poses[i]);
-      if (i == 0 || parameters.keyframe.isKeyframe(world_T_keyframe, pose.middle)) {
-        insertFeatures(first_scans[i], pose);
-      }
+      map_building.add(first_scans[i], inWorld(poses[i]), parameters);
     }
   }
 
-  // Mapping Building & Distortion Compensation Update (Eq. 12)
   void updateMap(const CloudView& cloud)
   {
-    const SweepPose pose = inWorld(tracker.track().pose());
-    report.keyframe = prior_map != MapUse::frozen && parameters.keyframe.isKeyframe(world_T_keyframe, pose.middle);
-    if (report.keyframe) {
-      forgetWhatHasGone(cloud, pose);
-      insertFeatures(scan.features, pose);
-    }
+    report.keyframe = map_building.add(cloud, scan, inWorld(tracker.track().pose()), parameters);
     report.milliseconds.map += watch.lap();
   }
 
-  void insertFeatures(const FeatureSet& features, const SweepPose& world_T_sensor)
-  {
-    FeatureSet undistorted;
-    compensate(features, SweepMotion(world_T_sensor.twist, 0.5, world_T_sensor.acceleration), undistorted,
-               parameters.threads);
-    map.insert(undistorted, world_T_sensor.middle, parameters.threads);
-    world_T_keyframe = world_T_sensor.middle;
-    ++keyframes;
-    report.keyframe = true;
-  }
-
-  /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is
-  /// looked at only now and then.
-  void forgetWhatHasGone(const CloudView& cloud, const SweepPose& pose)
-  {
-    constexpr int kKeyframesBetween = 7;
-    if (map.parameters().see_through_range > 0.0 && keyframes % kKeyframesBetween == kKeyframesBetween - 1) {
-      map.forgetSeenThrough(
-          undistortedSample(cloud, scan.lines, scan.timing, parameters.features, parameters.vertical_correction,
-                            SweepMotion(pose.twist, 0.5, pose.acceleration)),
-          pose.middle, parameters.threads);
-    }
-  }
-
-  const OdometryReport& miss(std::optional<double> stamp)
+  void miss(std::optional<double> stamp)
   {
     beginScan(0, stamp);
-    return predictOnly("the scan is missing");
+    predictOnly("the scan is missing");
   }
 
   /// A scan that told nothing, or none at all.
-  const OdometryReport& predictOnly(const char* reason)
+  void predictOnly(const char* reason)
   {
     report.reason = reason;
-    const bool started = tracker.hasBegun() || prior_map.has_value();
+    const bool started = tracker.hasBegun() || map_building.hasPrior();
     first_poses.miss();
-    return finish(started ? TrackingState::predicted : TrackingState::not_started);
+    finish(started ? TrackingState::predicted : TrackingState::not_started);
   }
 
-  const OdometryReport& finish(TrackingState state)
+  void finish(TrackingState state)
   {
     report.state = state;
     report.world_T_sensor = initial_pose;
@@ -240,7 +195,6 @@ struct SurfaceOdometry {
       first_scans.clear();
     }
     report.milliseconds.total = watch.total();
-    return report;
   }
 
   [[nodiscard]] SweepPose inWorld(const SweepPose& pose) const
@@ -268,11 +222,9 @@ struct SurfaceOdometry {
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)
   {
-    map = std::move(given);
-    prior_map = use;
-    world_T_keyframe = initial_pose;
-    tracker.localizeIn(map.points(FeatureKind::plane), map.points(FeatureKind::edge), initial_pose,
+    tracker.localizeIn(given.points(FeatureKind::plane), given.points(FeatureKind::edge), initial_pose,
                        use == MapUse::kept_current);
+    map_building.begin(std::move(given), use, initial_pose);
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include "map/voxel_pyramid.h"
 #include "motion/motion_estimate.h"
+#include "motion/sweep_pose.h"
 #include "odometry/sweep.h"
 #include "registration/surface_registration.h"
 
@@ -19,20 +20,6 @@ struct TrackSettings {
   DegreesOfFreedom locked = {};
   double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
   int threads = 1;
-};
-
-/// A sweep's place in the world.
-struct SweepPose {
-  SE3 middle;                              ///< world_T_sensor at mid-sweep
-  Vector6 twist;                           ///< motion during the sweep
-  Vector6 acceleration = Vector6::Zero();  ///< change of the twist over the sweep
-
-  /// At another fraction of the sweep.
-  [[nodiscard]] SE3 at(double fraction) const
-  {
-    const double since = fraction - 0.5;
-    return middle * exp(since * twist + 0.5 * since * since * acceleration);
-  }
 };
 
 /// Space (all points) and edges (the paper's features), as pyramids of voxels.

@@ -58,17 +58,13 @@ Eigen::Matrix<double, 3, 6> motionDerivative(const Eigen::Vector3d& rotated, con
   return derivative;
 }
 
-/// A factor's residual as a function of two perturbations (translation, rotation vector) of pose and twist, of which
-/// the point follows its shares: q' = R(d) q + t(d), d = pose_share * pose + twist_share * twist.
+/// A factor's residual as a function of a perturbation of the pose (translation, rotation vector), of which the point
+/// follows its share: q' = R(d) q + t(d), d = share * pose.
 template <typename Factor>
-class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6, 6> {
+class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6> {
 public:
-  PerturbationCost(const Correspondence<Factor>& correspondence, double pose_share, double twist_share,
-                   const DegreesOfFreedom& locked)
-      : factor_(correspondence.factor),
-        point_(correspondence.point),
-        share_{pose_share, twist_share},
-        free_(Vector6::Ones())
+  PerturbationCost(const Correspondence<Factor>& correspondence, double share, const DegreesOfFreedom& locked)
+      : factor_(correspondence.factor), point_(correspondence.point), share_(share), free_(Vector6::Ones())
   {
     for (std::size_t i = 0; i < locked.size(); ++i) {
       free_[static_cast<int>(i)] = locked[i] ? 0.0 : 1.0;
@@ -77,20 +73,16 @@ public:
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
   {
-    const Eigen::Map<const Vector6> pose(parameters[0]);
-    const Eigen::Map<const Vector6> twist(parameters[1]);
-    const Vector6 perturbation = share_[0] * pose + share_[1] * twist;
+    const Vector6 perturbation = share_ * Eigen::Map<const Vector6>(parameters[0]);
     const Eigen::Vector3d phi = perturbation.tail<3>();
     const Eigen::Vector3d rotated = expSO3(phi) * point_;
     Eigen::Map<Eigen::Matrix<double, Factor::kResiduals, 1>> residual(residuals);
     residual = factor_.residual(rotated + perturbation.head<3>());
-    for (int block = 0; jacobians != nullptr && block < 2; ++block) {
-      if (jacobians[block] != nullptr) {
-        const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
-            share_[block] * factor_.derivative() * motionDerivative(rotated, phi) * free_.asDiagonal();
-        for (int row = 0; row < Factor::kResiduals; ++row) {
-          Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[block] + 6L * row) = jacobian.row(row);
-        }
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
+          share_ * factor_.derivative() * motionDerivative(rotated, phi) * free_.asDiagonal();
+      for (int row = 0; row < Factor::kResiduals; ++row) {
+        Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[0] + 6L * row) = jacobian.row(row);
       }
     }
     return true;
@@ -99,46 +91,21 @@ public:
 private:
   Factor factor_;
   Eigen::Vector3d point_;  ///< without perturbation
-  double share_[2];        ///< of the pose's and of the twist's perturbation
+  double share_;           ///< of the perturbation
   Vector6 free_;           ///< 0 for a locked degree of freedom, else 1
-};
-
-/// The motion prior as residuals: its information's root times the distance from it.
-class PriorCost : public ceres::SizedCostFunction<12, 6, 6> {
-public:
-  explicit PriorCost(const MotionPriorTerm& term) : root_(term.information.llt().matrixU()), error_(term.error) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
-  {
-    Eigen::Matrix<double, 12, 1> change;
-    change << Eigen::Map<const Vector6>(parameters[0]), Eigen::Map<const Vector6>(parameters[1]);
-    Eigen::Map<Eigen::Matrix<double, 12, 1>>(residuals, 12) = root_ * (error_ + change);
-    for (int block = 0; jacobians != nullptr && block < 2; ++block) {
-      if (jacobians[block] != nullptr) {
-        Eigen::Map<Eigen::Matrix<double, 12, 6, Eigen::RowMajor>>(jacobians[block], 12, 6) =
-            root_.middleCols<6>(6L * block);
-      }
-    }
-    return true;
-  }
-
-private:
-  Eigen::Matrix<double, 12, 12> root_;
-  Eigen::Matrix<double, 12, 1> error_;
 };
 
 template <typename Factor>
 void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, const SweepModel& model,
-                  const DegreesOfFreedom& locked, ceres::LossFunction* loss, SweepStep& step,
+                  const DegreesOfFreedom& locked, ceres::LossFunction* loss, Vector6& perturbation,
                   ceres::Problem& ceres_problem)
 {
   for (const auto& c : correspondences) {
     if (c.weight > 0.0) {
-      const bool follows = model.freedom == SweepFreedom::follows_pose;
-      const double pose_share = follows ? 1.0 + model.sweep_per_motion * c.since_reference : 1.0;
-      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, pose_share, c.since_reference, locked),
+      const double share = model.follows_pose ? 1.0 + model.sweep_per_motion * c.since_reference : 1.0;
+      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, share, locked),
                                      new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP),
-                                     step.pose.data(), step.twist.data());
+                                     perturbation.data());
     }
   }
 }
@@ -151,22 +118,14 @@ Vector6 asTwist(const Vector6& perturbation)
 
 }  // namespace
 
-SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
-                         const Correspondences& correspondences, const KernelScales& scales,
-                         const std::optional<MotionPriorTerm>& prior)
+Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
+                       const Correspondences& correspondences, const KernelScales& scales)
 {
   // The losses must outlive the problem, which only borrows them.
   const auto edge_loss = makeLoss(problem.parameters.kernel, scales.edge);
   const auto plane_loss = makeLoss(problem.parameters.kernel, scales.plane);
-  SweepStep perturbation;
+  Vector6 perturbation = Vector6::Zero();
   ceres::Problem ceres_problem;
-  ceres_problem.AddParameterBlock(perturbation.pose.data(), 6);
-  ceres_problem.AddParameterBlock(perturbation.twist.data(), 6);
-  if (prior) {
-    ceres_problem.AddResidualBlock(new PriorCost(*prior), nullptr, perturbation.pose.data(), perturbation.twist.data());
-  } else {
-    ceres_problem.SetParameterBlockConstant(perturbation.twist.data());
-  }
   addResiduals(correspondences.edges, model, problem.parameters.locked, edge_loss.get(), perturbation, ceres_problem);
   addResiduals(correspondences.planes, model, problem.parameters.locked, plane_loss.get(), perturbation, ceres_problem);
 
@@ -178,9 +137,9 @@ SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& m
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   if (!summary.IsSolutionUsable()) {
-    return {};
+    return Vector6::Zero();
   }
-  return {asTwist(perturbation.pose), asTwist(perturbation.twist)};
+  return asTwist(perturbation);
 }
 
 }  // namespace pcl_floam

@@ -4,17 +4,14 @@
 
 #include "registration/correspondences.h"
 #include "registration/normal_equations.h"
-#include "registration/sweep_step.h"
 
-#include <optional>
+#include <pcl_floam/registration/sweep_model.h>
 
 namespace pcl_floam {
 
 /// The step that minimises the robust weighted cost (Eq. 10) of fixed correspondences, by Ceres.
 /// Zero if Ceres finds no usable solution.
-/// \param prior of a sweep whose twist is estimated, too; without one only the pose moves
-[[nodiscard]] SweepStep solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
-                                       const Correspondences& correspondences, const KernelScales& scales,
-                                       const std::optional<MotionPriorTerm>& prior);
+[[nodiscard]] Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
+                                     const Correspondences& correspondences, const KernelScales& scales);
 
 }  // namespace pcl_floam

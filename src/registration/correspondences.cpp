@@ -28,15 +28,10 @@ void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondenc
 {
   correspondence.variance = plane.variance;
   correspondence.tilt = plane.tilt;
-  correspondence.hinged = plane.hinged;
 }
 
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
 constexpr double kNegligible = 0.02;
-
-/// In a sparse target features without a plane are tried with so many neighbours more: the map of the first seconds has
-/// too few for its heights. In maps that have grown it would take time for nothing.
-constexpr int kSpareNeighbors = 3;
 
 /// Features of one kind, and how the map holds them.
 template <typename Shape>
@@ -45,23 +40,7 @@ struct FeatureKindProblem {
   const std::vector<double>& weights;
   const NeighborSearch& search;
   int neighbors;
-  int neighbors_at_most;  ///< >= neighbors
   std::optional<Shape> (*fit)(const Neighbors&, const RegistrationParameters&);
-
-  /// The shape of what was found around a query or, if it has none, of more neighbours, which replace those found.
-  std::optional<Shape> shapeOf(Neighbors& found, const Eigen::Vector3d& query, double radius,
-                               const RegistrationParameters& parameters) const
-  {
-    if (found.count < neighbors) {
-      return std::nullopt;
-    }
-    std::optional<Shape> shape = fit(found, parameters);
-    if (!shape && neighbors_at_most > neighbors) {
-      search.nearest(query, neighbors_at_most, radius, found);
-      shape = fit(found, parameters);
-    }
-    return shape;
-  }
 };
 
 /// The features whose neighbours are searched at one time.
@@ -86,7 +65,9 @@ public:
       Correspondence<Factor>& correspondence = correspondences[feature_[n]];
       correspondence.weight = 0.0;
       correspondence.searched_at = correspondence.point;
-      if (const auto geometry = kind.shapeOf(found_[n], query_[n], search_radius, parameters)) {
+      const auto geometry =
+          found_[n].count < kind.neighbors ? std::optional<Shape>() : kind.fit(found_[n], parameters);
+      if (geometry) {
         correspondence.factor = makeFactor(*geometry, correspondence.point);
         correspondence.weight = kind.weights[feature_[n]];
         noteNoise(*geometry, correspondence);
@@ -142,14 +123,10 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          Correspondences& correspondences)
 {
   const RegistrationParameters& parameters = problem.parameters;
-  const int edge_points = parameters.edge_neighbors;
-  const int plane_points = parameters.plane_neighbors;
-  const int most_plane_points =
-      problem.sparse_target ? std::min(plane_points + kSpareNeighbors, kMaxNeighbors) : plane_points;
-  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges,
-                                          edge_points,  edge_points,  fitLine};
-  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights,     *problem.target.planes,
-                                            plane_points,  most_plane_points, fitPlane};
+  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors,
+                                          fitLine};
+  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights, *problem.target.planes,
+                                            parameters.plane_neighbors, fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
   weighByScatter(plane_weights, parameters.plane_scatter, correspondences.planes);

@@ -28,7 +28,6 @@ struct Correspondence {
   double variance = 0.0;  ///< of the plane at the point, m^2; 0 for lines
   /// What the plane's normal may be off, one standard deviation along each axis; zero for lines.
   std::array<Eigen::Vector3d, 2> tilt = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  bool hinged = false;           ///< one map point alone holds the plane
   double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
   /// Where the neighbours were searched, in the same frame.
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -48,7 +47,6 @@ struct RegistrationProblem {
   /// the sensor, not about a far map origin, where rotation and translation could not be told apart.
   Eigen::Vector3d origin;
   int threads = 1;
-  bool sparse_target = false;  ///< as in \ref RegistrationRun
 };
 
 /// Moves the features along the trajectory, and finds the line of each edge and the plane of each plane feature.

@@ -2,15 +2,12 @@
 
 #include "registration/ceres_solver.h"
 #include "registration/correspondences.h"
-#include "registration/feature_sampling.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
-#include "registration/sweep_step.h"
 #include "registration/weights.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace pcl_floam {
 
@@ -25,19 +22,21 @@ constexpr double kNear = 10.0;
 /// An edge costs what a plane does, and says less.
 constexpr std::size_t kPlanesPerEdge = 6;
 
-/// The features that are registered.
-FeatureSet sampleOf(const FeatureSet& source, std::size_t most_planes, bool spread)
+/// At most so many of the features, evenly taken in their order.
+std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
 {
-  constexpr float kCell = 2.0F;  // m
-  constexpr int kMostPerCell = 8;
-  const auto take = [spread](const std::vector<Feature>& features, std::size_t most) {
-    if (spread && features.size() > most) {
-      const std::vector<Feature> few = atMostPerCell(features, kCell, kMostPerCell);
-      return evenly(few.size() >= most ? few : features, most);
-    }
-    return evenly(features, most);
-  };
-  return {take(source.edges, most_planes / kPlanesPerEdge), take(source.planes, most_planes)};
+  const std::size_t count = std::min(most, features.size());
+  std::vector<Feature> taken(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    taken[i] = features[i * features.size() / count];
+  }
+  return taken;
+}
+
+/// The features that are registered.
+FeatureSet sampleOf(const FeatureSet& source, std::size_t most_planes)
+{
+  return {evenly(source.edges, most_planes / kPlanesPerEdge), evenly(source.planes, most_planes)};
 }
 
 std::vector<double> times(double factor, std::vector<double> weights)
@@ -56,10 +55,9 @@ public:
       : source_(source),
         on_iteration_(run.on_iteration),
         model_(localModel(run)),
-        problem_{target, parameters, run.guess.translation, run.threads, run.sparse_target},
+        problem_{target, parameters, run.guess.translation, run.threads},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
         search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
-        uncertainty_(run.guess_uncertainty),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
         edge_weights_(times(
             parameters.edge_weight,
@@ -87,17 +85,16 @@ private:
   {
     SweepModel model = run.sweep;
     model.held_pose.translation -= run.guess.translation;
-    model.prior.pose.translation -= run.guess.translation;
     return model;
   }
 
   static SweepTrajectory startOf(const SweepModel& model, const SE3& local_T_sensor)
   {
-    if (model.freedom == SweepFreedom::follows_pose) {
+    if (model.follows_pose) {
       const Vector6 motion = log(model.held_pose.inverse() * local_T_sensor);
       return {local_T_sensor, model.sweep_per_motion * motion, model.reference};
     }
-    return {local_T_sensor, model.twist, model.reference, model.acceleration(model.twist)};
+    return {local_T_sensor, model.twist, model.reference};
   }
 
   [[nodiscard]] SE3 pose() const
@@ -113,7 +110,7 @@ private:
     }
     findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_, stride_,
                         correspondences_);
-    const KernelScales scales = adaptKernelScales(problem_, correspondences_, uncertainty_);
+    const KernelScales scales = adaptKernelScales(problem_, correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
     lock(problem_.parameters.locked, equations_);
     ++report_.iterations;
@@ -128,50 +125,33 @@ private:
     return take(solve(scales));
   }
 
-  [[nodiscard]] SweepStep solve(const KernelScales& scales) const
+  [[nodiscard]] Vector6 solve(const KernelScales& scales) const
   {
-    const InformationAnalysis analysis(equations_, problem_.parameters.weak_threshold);
-    const bool free = model_.freedom == SweepFreedom::free;
-    if (problem_.parameters.solver == SolverKind::ceres) {
-      std::optional<MotionPriorTerm> prior;
-      if (free) {
-        prior = motionPriorTerm(model_.prior, trajectory_, independentVariance(analysis));
-      }
-      return solveWithCeres(problem_, model_, correspondences_, scales, prior);
-    }
-    if (free) {
-      return FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).step();
-    }
-    return {analysis.step(), Vector6::Zero()};
+    return problem_.parameters.solver == SolverKind::ceres
+               ? solveWithCeres(problem_, model_, correspondences_, scales)
+               : InformationAnalysis(equations_, problem_.parameters.weak_threshold).step();
   }
 
   /// Applies a step on the left (Eq. 11). \return true when the iterations are over
-  bool take(const SweepStep& step)
+  bool take(const Vector6& step)
   {
-    if (!step.isFinite()) {
+    if (!step.allFinite()) {
       report_.termination = Termination::degenerate;
       return true;
     }
-    uncertainty_ *= 0.5;
-    trajectory_ = trajectory_.perturbed(step.pose, step.twist);
-    if (model_.freedom == SweepFreedom::follows_pose) {
+    trajectory_ = trajectory_.perturbed(step);
+    if (model_.follows_pose) {
       trajectory_ = startOf(model_, trajectory_.pose());
-    }
-    if (model_.freedom == SweepFreedom::free) {
-      // The derivatives leave out that the acceleration follows the twist: a quarter of what the twist does at the
-      // ends.
-      const Vector6& twist = trajectory_.twist();
-      trajectory_ = {trajectory_.pose(), twist, model_.reference, model_.acceleration(twist)};
     }
     const bool searched_wide = search_radius_ > problem_.parameters.max_neighbor_distance;
     if (searched_wide) {
       search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
       correspondences_ = Correspondences();  // they were found within the wider radius
     }
-    const bool small = step.pose.head<3>().norm() < problem_.parameters.translation_epsilon &&
-                       step.pose.tail<3>().norm() < problem_.parameters.rotation_epsilon;
-    const bool near = step.pose.head<3>().norm() < kNear * problem_.parameters.translation_epsilon &&
-                      step.pose.tail<3>().norm() < kNear * problem_.parameters.rotation_epsilon;
+    const bool small = step.head<3>().norm() < problem_.parameters.translation_epsilon &&
+                       step.tail<3>().norm() < problem_.parameters.rotation_epsilon;
+    const bool near = step.head<3>().norm() < kNear * problem_.parameters.translation_epsilon &&
+                      step.tail<3>().norm() < kNear * problem_.parameters.rotation_epsilon;
     if (stride_ > 1) {
       stride_ = near && !searched_wide ? 1 : stride_;
       return false;
@@ -203,10 +183,7 @@ private:
     report_.residual_rms = std::sqrt(equations_.weighted_squares / equations_.weight);
     report_.information = equations_.information;
     report_.sweep_twist = trajectory_.twist();
-    report_.sweep_acceleration = trajectory_.acceleration();
-    report_.covariance = model_.freedom == SweepFreedom::free
-                             ? FreeSweepSolver(equations_, analysis, model_.prior, trajectory_).poseCovariance()
-                             : analysis.covariance();
+    report_.covariance = analysis.covariance();
     report_.weak_directions = analysis.weakDirections();
     clearLocked();
     return report_;
@@ -239,7 +216,6 @@ private:
   RegistrationProblem problem_;
   SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin
   double search_radius_;
-  double uncertainty_;  ///< m; how far off the pose may be
   std::size_t stride_;  ///< far from the solution, every so many-th feature will do
   std::vector<double> edge_weights_;
   std::vector<double> plane_weights_;
@@ -268,7 +244,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  const FeatureSet sample = sampleOf(source, static_cast<std::size_t>(parameters.max_features), run.spread_features);
+  const FeatureSet sample = sampleOf(source, static_cast<std::size_t>(parameters.max_features));
   return FeaturePoseEstimation(sample, target, run, parameters).run();
 }
 

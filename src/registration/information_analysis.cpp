@@ -78,17 +78,6 @@ double InformationAnalysis::poseVariance() const
   return kFeaturesPerIndependentOne * meanWeight() * residualVariance();
 }
 
-Matrix6 InformationAnalysis::strongProjection() const
-{
-  Matrix6 strong = Matrix6::Zero();
-  for (int i = 0; i < 6; ++i) {
-    if (!isWeak(i)) {
-      strong += eigenvectors_.col(i) * eigenvectors_.col(i).transpose();
-    }
-  }
-  return scale_.asDiagonal() * strong * scale_.cwiseInverse().asDiagonal();
-}
-
 std::vector<WeakDirection> InformationAnalysis::weakDirections() const
 {
   std::vector<WeakDirection> weak;

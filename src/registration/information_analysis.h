@@ -31,9 +31,6 @@ public:
 
   [[nodiscard]] std::vector<WeakDirection> weakDirections() const;
 
-  /// What is left of a perturbation without its part along weak directions: P of Zhang and Singh.
-  [[nodiscard]] Matrix6 strongProjection() const;
-
   /// Weighted mean of the squared residuals, m^2.
   [[nodiscard]] double residualVariance() const { return equations_.weighted_squares / equations_.weight; }
 

@@ -94,23 +94,6 @@ public:
   /// By what the plane's variance is larger at the query, the origin, than at the points' centre.
   [[nodiscard]] double extrapolation(const Eigen::Vector3d& center) const { return 1.0 + squaredDistance(center); }
 
-  /// Whether one of the points alone holds the plane in its place: what part the plane takes in that point's errors
-  /// (its leverage, as statistics calls it) is nearly all. The other points are on a line, and the plane would go
-  /// through that one wherever it were.
-  ///
-  /// Four points of a floor's scan line and one of the wall beside it are such a plane. In the first seconds a map has
-  /// many, and they seemed to tell of the way along smooth tunnels: in 10 of 24 starts it was not called weak for 15
-  /// scans and more. Without them altogether floors are not held at all: errors of 50 cm in height.
-  [[nodiscard]] bool hingesOnOnePoint(const Neighbors& neighbors, const Eigen::Vector3d& center) const
-  {
-    constexpr double kNearlyAll = 0.998;
-    double farthest = 0.0;
-    for (int i = 0; i < neighbors.count; ++i) {
-      farthest = std::max(farthest, squaredDistance(neighbors[i].offset.cast<double>() - center));
-    }
-    return 1.0 + farthest > kNearlyAll * neighbors.count;
-  }
-
   /// Points that scatter by sigma across a plane, and along it with the covariance C, leave its normal off by
   /// sigma^2 C^-1 / k: here as the two columns of a root of that (Cholesky). The scatter about a plane fitted to the
   /// same k points is less than that about the true one by (k - 3) / k.
@@ -162,8 +145,7 @@ std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationP
   const double product = minors - across * sum;
   const double longest = 0.5 * (sum + std::sqrt(std::max(0.0, sum * sum - 4.0 * product)));
   const double shorter = sum - longest;
-  if (!(shorter > parameters.plane_ratio * across) || !(shorter > parameters.plane_spread * longest) ||
-      !(shorter > parameters.plane_width * parameters.plane_width)) {
+  if (!(shorter > parameters.plane_ratio * across) || !(shorter > parameters.plane_spread * longest)) {
     return std::nullopt;
   }
   const Eigen::Vector3d normal = nullDirection(points.covariance - across * Eigen::Matrix3d::Identity());
@@ -172,7 +154,7 @@ std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationP
     return std::nullopt;
   }
   return PlaneFit{points.center, normal, across * in_plane.extrapolation(points.center),
-                  in_plane.tilt(across, neighbors.count), in_plane.hingesOnOnePoint(neighbors, points.center)};
+                  in_plane.tilt(across, neighbors.count)};
 }
 
 }  // namespace pcl_floam

@@ -27,8 +27,6 @@ struct PlaneFit {
   double variance;
   /// By what the normal may be off: its covariance is the sum of their outer products.
   std::array<Eigen::Vector3d, 2> tilt;
-  /// One of the neighbours alone says how it is turned about the line of the others.
-  bool hinged;
 };
 
 /// The line through the neighbours' centre along the eigenvector of the largest eigenvalue of their covariance;
@@ -36,8 +34,7 @@ struct PlaneFit {
 [[nodiscard]] std::optional<LineFit> fitLine(const Neighbors& neighbors, const RegistrationParameters& parameters);
 
 /// The plane through the neighbours' centre across the eigenvector of the smallest eigenvalue; nothing unless the
-/// second eigenvalue is `plane_ratio` times the smallest, `plane_spread` times the largest, and the square of
-/// `plane_width`.
+/// second eigenvalue is `plane_ratio` times the smallest and `plane_spread` times the largest.
 [[nodiscard]] std::optional<PlaneFit> fitPlane(const Neighbors& neighbors, const RegistrationParameters& parameters);
 
 }  // namespace pcl_floam

@@ -22,36 +22,19 @@ constexpr std::size_t kNoiseStride = 4;
 /// those are left almost untouched by the kernel.
 constexpr double kFeatureScalePerMedian = 3.0 * 1.4826;
 
-/// Fewer residuals than this tell little of their own spread. Between a corridor's doors there may be two edges, one
-/// of them wrong by half a metre: by their median it would be right, and hold the pose. So the planes' spread is taken
-/// instead; but while the pose may be off by more, edges that say so must count, or the noise of the planes' normals
-/// would hold it. Far from the solution features are thinned, and those are counted that are left.
-constexpr std::size_t kEnoughForSpread = 40;
-
-/// Many edges may still be a lorry's, which agree with nothing and draw the pose along. So their scale is bounded as
-/// well, so many times as wide: edges are found less precisely than planes, and a tighter bound would leave corridors
-/// without them.
-constexpr double kManyEdgesWidening = 3.5;
-
-/// The kernel's scale for residuals of one kind.
-struct SpreadOfResiduals {
-  template <typename Factor>
-  SpreadOfResiduals(const std::vector<Correspondence<Factor>>& correspondences, double smallest)
-  {
-    std::vector<double> squares;
-    squares.reserve(correspondences.size());
-    for (const auto& c : correspondences) {
-      if (c.weight > 0.0) {
-        squares.push_back(c.factor.squaredResidual(c.point));
-      }
+/// The kernel's scale for residuals of one kind, m.
+template <typename Factor>
+double scaleOf(const std::vector<Correspondence<Factor>>& correspondences, double smallest)
+{
+  std::vector<double> squares;
+  squares.reserve(correspondences.size());
+  for (const auto& c : correspondences) {
+    if (c.weight > 0.0) {
+      squares.push_back(c.factor.squaredResidual(c.point));
     }
-    is_reliable = squares.size() >= kEnoughForSpread;
-    scale = std::max(smallest, kFeatureScalePerMedian * std::sqrt(medianOf(squares)));
   }
-
-  bool is_reliable = false;
-  double scale = 0.0;  ///< m
-};
+  return std::max(smallest, kFeatureScalePerMedian * std::sqrt(medianOf(squares)));
+}
 
 /// The sums of one chunk: upper triangles, row by row, so that the compiler can keep to straight lines.
 class ChunkSums {
@@ -158,18 +141,9 @@ void addRows(const Correspondence<PlaneFactor>& c, double weight, ChunkSums& sum
   sums.add(c.point, c.factor.normal, c.factor.residual(c.point)[0], weight, c.since_reference);
 }
 
-/// What of a plane that hinges on one map point is taken for noise. With all of it, floors of which a young map has
-/// single scan lines would not be seen at all; with 0.8 of it, two of 24 starts along smooth tunnels would take the
-/// noise for knowledge of the way along.
-constexpr double kHingedNoise = 0.9;
-
 /// The noise in the rows of a plane.
 void addNoise(const Correspondence<PlaneFactor>& c, double weight, int count, ChunkSums& sums)
 {
-  if (c.hinged) {
-    sums.addNoise(c.point, c.factor.normal, kHingedNoise * weight);
-    return;
-  }
   if (static_cast<std::size_t>(count) % kNoiseStride != 0) {
     return;
   }
@@ -215,16 +189,10 @@ void accumulate(const Correspondence<Factor>& c, RobustKernel kernel, double sca
 
 }  // namespace
 
-KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
-                               double uncertainty)
+KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences)
 {
-  const SpreadOfResiduals edges(correspondences.edges, problem.parameters.kernel_scale);
-  const SpreadOfResiduals planes(correspondences.planes, problem.parameters.kernel_scale);
-  if (!planes.is_reliable) {
-    return {edges.scale, planes.scale};
-  }
-  const double widening = edges.is_reliable ? kManyEdgesWidening : 1.0;
-  return {std::min(edges.scale, widening * std::max(planes.scale, uncertainty)), planes.scale};
+  const double smallest = problem.parameters.kernel_scale;
+  return {scaleOf(correspondences.edges, smallest), scaleOf(correspondences.planes, smallest)};
 }
 
 NormalEquations buildNormalEquations(const RegistrationProblem& problem, const Correspondences& correspondences,
@@ -252,6 +220,19 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
     sums.addTo(result);
   }
   return result;
+}
+
+NormalEquations reducedToPose(const NormalEquations& equations, const SweepModel& model)
+{
+  NormalEquations reduced = equations;
+  if (model.follows_pose) {
+    const double slope = model.sweep_per_motion;
+    reduced.information += 2.0 * slope * equations.coupling + slope * slope * equations.twist_information;
+    // Roughly: the normals' noise grows with the whole, not with the points before and after the reference apart.
+    reduced.noise_information *= reduced.information.trace() / equations.information.trace();
+    reduced.gradient += slope * equations.twist_gradient;
+  }
+  return reduced;
 }
 
 void lock(const DegreesOfFreedom& locked, NormalEquations& equations)

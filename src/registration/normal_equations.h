@@ -5,6 +5,7 @@
 #include "registration/correspondences.h"
 
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/registration/sweep_model.h>
 
 namespace pcl_floam {
 
@@ -15,11 +16,9 @@ struct KernelScales {
 };
 
 /// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`. Beside 40 planes or more, that of the edges is no greater than that of the planes, or
-/// than the pose's uncertainty; of 40 edges or more, than 3.5 times as much. \param uncertainty m; how far off the
-/// pose may be
-[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences,
-                                             double uncertainty = 0.0);
+/// parameters' `kernel_scale`.
+[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
+                                             const Correspondences& correspondences);
 
 /// Sums over all correspondences.
 ///
@@ -27,8 +26,7 @@ struct KernelScales {
 /// over the sweep as delta + s epsilon: J is the derivative by the former, s J by the latter.
 struct NormalEquations {
   Matrix6 information = Matrix6::Zero();  ///< H = sum w J^T J
-  /// The part of H that the noise of the planes' normals makes: sum w J^T J with J of the normals' tilts, and with
-  /// nearly all of J itself where a plane hinges on one map point. Along a smooth corridor there is nothing else in H.
+  /// The part of H that the noise of the planes' normals makes: sum w J^T J with J of the normals' tilts. Along a smooth corridor there is nothing else in H.
   Matrix6 noise_information = Matrix6::Zero();
   Matrix6 coupling = Matrix6::Zero();           ///< sum w s J^T J: of pose and twist
   Matrix6 twist_information = Matrix6::Zero();  ///< sum w s^2 J^T J
@@ -48,6 +46,10 @@ struct NormalEquations {
 /// \return the sums, bit-identical for every number of threads: fixed chunks, added in order
 [[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem,
                                                    const Correspondences& correspondences, const KernelScales& scales);
+
+/// The equations as the model's pose sees them: where the twist follows from the pose, a change of the pose moves
+/// points measured before its instant less, and points after it more.
+[[nodiscard]] NormalEquations reducedToPose(const NormalEquations& equations, const SweepModel& model);
 
 /// Takes out all that the equations say about locked degrees of freedom.
 void lock(const DegreesOfFreedom& locked, NormalEquations& equations);

@@ -65,7 +65,6 @@ void validate(const RegistrationParameters& p)
   check.above("line_ratio", p.line_ratio, 1.0);
   check.above("plane_ratio", p.plane_ratio, 1.0);
   check.range("plane_spread", p.plane_spread, 0.0, 0.999);
-  check.atLeast("plane_width", p.plane_width, 0.0);
   check.above("edge_weight", p.edge_weight, 0.0);
   check.atLeast("plane_scatter", p.plane_scatter, 0.0);
   check.above("kernel_scale", p.kernel_scale, 0.0);

@@ -102,19 +102,6 @@ TEST_F(InformationAnalysisTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneW
   EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections().empty());
 }
 
-TEST_F(InformationAnalysisTest, PlanesThatHingeOnOnePointTellLittle)
-{
-  constexpr std::size_t kFrames = 3;
-  Correspondences corridor = corridorOf(0.03, kFrames);
-  EXPECT_TRUE(InformationAnalysis(equationsOf(corridor), 2e-4).weakDirections().empty());
-  for (std::size_t i = 0; i < kFrames; ++i) {
-    corridor.planes[i].hinged = true;
-  }
-  const auto weak = InformationAnalysis(equationsOf(corridor), 2e-4).weakDirections();
-  ASSERT_EQ(weak.size(), 1U);
-  EXPECT_GT(std::abs(weak.front().direction[0]), 0.99);
-}
-
 TEST_F(InformationAnalysisTest, TheNoiseIsThatOfThePlanesThatAreLinked)
 {
   const NormalEquations all = equationsOf(corridorOf(0.03, 0));

@@ -1,18 +1,16 @@
 // Whether the errors of single registrations are what their covariance says: normalised estimation error squared.
 
-#include "odometry/constant_velocity.h"
+#include "odometry/scan_preparation.h"
+#include "odometry/track.h"
 #include "simulation.h"
-
-#include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/filters/sweep_motion.h>
-#include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/registration/feature_registration.h>
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
 
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace pcl_floam::simulator {
 
@@ -21,11 +19,12 @@ struct CalibrationScene {
   const char* sensor;
 };
 
-/// Sweeps are registered as the odometry does it, with motion estimated under a prior, in a map of exact poses.
+/// Sweeps are registered as the odometry does it, in a map of those before, at their exact poses.
 class CovarianceCalibration : public testing::TestWithParam<CalibrationScene> {
 protected:
-  static constexpr int kMapped = 20;  // sweeps before the first that is registered
-  static constexpr int kSweeps = 50;
+  static constexpr int kMapped = 20;
+  static constexpr int kRegistrations = 10;
+  static constexpr int kBetween = 3;
 
   void visit(std::uint64_t seed)
   {
@@ -35,56 +34,40 @@ protected:
     options.seed = seed;
     options.start = 8.0;
     Simulation simulation(options);
-    KeyframeVoxelMap map;
-    VelocityNoise noise;
-    SE3 last_pose;
-    SweepMotion last_motion;
-    for (int i = 0; i < kSweeps; ++i) {
-      const Sweep sweep = simulation.sweep(static_cast<std::size_t>(i));
-      const FeatureSet features = featuresOf(sweep);
-      const SweepMotion motion = motionOf(sweep);
-      if (i > 0) {
-        // The odometry's prediction, from the exact motion before.
-        Vector6 twist = last_motion.twist();
-        twist.tail<3>() += 0.5 * last_motion.acceleration().tail<3>();
-        RegistrationRun run;
-        run.guess = last_pose * exp(twist);
-        run.sweep.freedom = SweepFreedom::free;
-        run.sweep.reference = 0.5;
-        run.sweep.twist = twist;
-        run.sweep.last_twist = last_motion.twist();
-        run.sweep.sweeps_since_last = 1.0;
-        run.sweep.prior = noise.prior(run.guess, twist, 1.0, 1.0);
-        if (i >= kMapped && i % 3 == 0) {
-          judge(registerFeatures(features, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run,
-                                 RegistrationParameters()),
-                sweep.world_T_middle);
-        }
-        noise.observe(motion.twist() - twist, 1.0);
+    std::vector<pcl_floam::Sweep> sweeps;
+    std::vector<SE3> poses;
+    for (std::size_t i = 0; i < kMapped + kBetween * kRegistrations; ++i) {
+      const Sweep simulated = simulation.sweep(i);
+      pcl_floam::Sweep sweep = sampled(simulated);
+      if (i >= kMapped && (i - kMapped) % kBetween == 0) {
+        Track track({}, side_);
+        track.begin(sweeps, poses);
+        judge(track.step(sweep).report, simulated.world_T_middle);
       }
-      last_pose = sweep.world_T_middle;
-      last_motion = motion;
-      FeatureSet undistorted;
-      compensate(features, motion, undistorted);
-      map.insert(undistorted, sweep.world_T_middle);
+      sweeps.push_back(std::move(sweep));
+      poses.push_back(simulated.world_T_middle);
+      if (sweeps.size() > kMapped) {
+        sweeps.erase(sweeps.begin());
+        poses.erase(poses.begin());
+      }
     }
   }
 
-  static FeatureSet featuresOf(const Sweep& sweep)
+  pcl_floam::Sweep sampled(const Sweep& simulated)
   {
-    const CloudView view = viewOf(sweep.cloud);
-    ScanLines lines;
-    findScanLines(view, {}, {}, lines);
-    FeatureSet features;
-    extractFeatures(view, lines, findScanTiming(view, lines, {}, {}), FeatureParameters(), features);
-    return features;
-  }
-
-  static SweepMotion motionOf(const Sweep& sweep)
-  {
-    const Vector6 before = log(sweep.world_T_start.inverse() * sweep.world_T_middle);
-    const Vector6 after = log(sweep.world_T_middle.inverse() * sweep.world_T_end);
-    return SweepMotion(before + after, 0.5, 4.0 * (after - before));
+    constexpr std::size_t kCells = 2000;
+    constexpr double kMapSpacing = 0.3;
+    const CloudView view = viewOf(simulated.cloud);
+    PreparedScan scan;
+    scan.findStructure(view, {}, 0.1);
+    scan.takePoints(view, {});
+    side_ = side_ > 0.0 ? side_ : sampling_.sideFor(scan.points, kCells);
+    pcl_floam::Sweep sweep;
+    sampling_.sample(scan.points, kMapSpacing * side_, sweep.dense);
+    sampling_.sample(sweep.dense, side_, sweep.sample);
+    sweep.edges = scan.edges;
+    sweep.fraction = scan.sweep_fraction;
+    return sweep;
   }
 
   void judge(const RegistrationReport& report, const SE3& truth)
@@ -97,6 +80,8 @@ protected:
     ++registrations_;
   }
 
+  SpatialSampling sampling_;
+  double side_ = 0.0;
   double squares_ = 0.0;
   int registrations_ = 0;
 };
@@ -110,6 +95,7 @@ INSTANTIATE_TEST_SUITE_P(Simulation, CovarianceCalibration,
 TEST_P(CovarianceCalibration, ErrorsAreWithinTheirChiSquareBound)
 {
   for (const std::uint64_t seed : {31U, 32U}) {
+    side_ = 0.0;
     visit(seed);
   }
   ASSERT_EQ(registrations_, 20);

@@ -128,19 +128,6 @@ TEST(ResultWriter, PutsCorrectedPosesInPlaceOfTheLastOnes)
   }
 }
 
-TEST(RunSummary, TellsInHowManyScansSomethingFilledTheView)
-{
-  const OdometryOptions options;
-  const OdometryPipeline odometry;
-  RunResult result;
-  const RunSummary summary{options, odometry, result, 10, {}};
-  EXPECT_EQ(toJson(summary)["scans"]["crowded"], 0);
-  EXPECT_EQ(describe(summary).find("crowded"), std::string::npos);
-  result.crowded = 7;
-  EXPECT_EQ(toJson(summary)["scans"]["crowded"], 7);
-  EXPECT_NE(describe(summary).find("in 7 scans: their poses are those of features spread"), std::string::npos);
-}
-
 TEST(TimeStatistics, AreThoseOfTheSamples)
 {
   std::vector<StageTimes> times(101);

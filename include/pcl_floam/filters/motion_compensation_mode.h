@@ -11,7 +11,9 @@ enum class CompensationMode : std::uint8_t {
   none,       ///< points are used as measured
   two_stage,  ///< the paper's: predicted motion before, optimised motion after the pose estimation
   iterative,  ///< LOAM's: compensated anew with every new estimate within the pose iterations
-  continuous  ///< the motion during the sweep is estimated together with the pose, under a constant-velocity prior
+  /// The motion during the sweep is estimated together with the pose, under a constant-velocity prior; by features,
+  /// which have no such prior, it is `iterative`.
+  continuous
 };
 
 [[nodiscard]] const char* toString(CompensationMode mode);

@@ -50,11 +50,6 @@ struct OdometryReport {
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
   /// was missing; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
-  /// The pose is that of features that are spread evenly over the scene, instead of all: after a start among cars that
-  /// could be taken for the world, and where what fills a part of the view, such as a lorry beside the sensor, draws
-  /// the pose away from where the rest of the scene has it, until the two have agreed in several scans; and where all
-  /// of them could not be registered. Scans of which the spread features could not be registered have all, in between.
-  bool crowded = false;
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
   double explained = 0.0;

@@ -24,16 +24,10 @@ struct FeatureTarget {
 struct RegistrationRun {
   SE3 guess;  ///< target_T_source
   /// m; how far off the guess may be: neighbours are searched this far at first, and less with each iteration
-  /// down to `max_neighbor_distance`. 0 uses the latter throughout. Residuals of a few edges may be as large at first.
+  /// down to `max_neighbor_distance`. 0 uses the latter throughout.
   double guess_uncertainty = 0.0;
   int threads = 1;
   SweepModel sweep;  ///< default: the source is not distorted
-  /// Where there are more features than `max_features`, those of crowded places are thinned first if enough are left,
-  /// so that near things, which may move, don't outweigh the rest.
-  bool spread_features = false;
-  /// The target is made of few scans: of a floor it may hold single scan lines, on which the nearest points of a
-  /// feature all lie. Where no plane fits them, a few more are tried, so that the floor holds the height.
-  bool sparse_target = false;
   /// Called before each iteration with the present pose, if set.
   std::function<void(const SE3& target_T_source)> on_iteration;
 };

@@ -48,11 +48,6 @@ struct RegistrationParameters {
   double line_ratio = 8.0;             ///< a line's largest eigenvalue must exceed this times the second; > 1
   double plane_ratio = 20.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
   double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
-  /// m; and its root must exceed this, or the noise of the ranges alone, along the scan lines of a single sweep, would
-  /// make planes that stand across floors and ceilings; >= 0. Reasonable: 0.03 to 0.06, and less for small objects: no
-  /// more than half the spacing of the target's points. The odometry takes a quarter of its map's plane voxels if that
-  /// is less.
-  double plane_width = 0.05;
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. Edges are centimetres off, by the noise and the

@@ -1,0 +1,23 @@
+/// \file sweep_pose.h
+/// Where the sensor was during a sweep.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+namespace pcl_floam {
+
+/// A sweep's place in the world.
+struct SweepPose {
+  SE3 middle;                              ///< world_T_sensor at mid-sweep
+  Vector6 twist = Vector6::Zero();         ///< motion during the sweep
+  Vector6 acceleration = Vector6::Zero();  ///< change of the twist over the sweep
+
+  /// At another fraction of the sweep.
+  [[nodiscard]] SE3 at(double fraction) const
+  {
+    const double since = fraction - 0.5;
+    return middle * exp(since * twist + 0.5 * since * since * acceleration);
+  }
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,79 @@
+#include "odometry/map_building.h"
+
+#include "odometry/scan_sample.h"
+
+#include <pcl_floam/filters/sweep_motion.h>
+
+#include <utility>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr double kMiddle = 0.5;
+
+SweepMotion motionDuring(const SweepPose& pose)
+{
+  return SweepMotion(pose.twist, kMiddle, pose.acceleration);
+}
+
+}  // namespace
+
+void MapBuilding::clear()
+{
+  map_.clear();
+  keyframes_ = 0;
+}
+
+void MapBuilding::begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sensor)
+{
+  map_ = std::move(map);
+  prior_ = use;
+  world_T_keyframe_ = world_T_sensor;
+}
+
+bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const
+{
+  if (!prior_ && keyframes_ == 0) {
+    return true;
+  }
+  return prior_ != MapUse::frozen && policy.isKeyframe(world_T_keyframe_, world_T_sensor);
+}
+
+void MapBuilding::insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads)
+{
+  FeatureSet undistorted;
+  compensate(measured, motionDuring(world_T_sensor), undistorted, threads);
+  map_.insert(undistorted, world_T_sensor.middle, threads);
+  world_T_keyframe_ = world_T_sensor.middle;
+  ++keyframes_;
+}
+
+bool MapBuilding::add(const FeatureSet& measured, const SweepPose& world_T_sensor, const OdometryParameters& parameters)
+{
+  const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
+  if (is_keyframe) {
+    insert(measured, world_T_sensor, parameters.threads);
+  }
+  return is_keyframe;
+}
+
+/// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
+/// at only now and then.
+bool MapBuilding::add(const CloudView& cloud, const PreparedScan& scan, const SweepPose& world_T_sensor,
+                      const OdometryParameters& parameters)
+{
+  constexpr int kKeyframesBetween = 7;
+  const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
+  if (is_keyframe) {
+    if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
+      map_.forgetSeenThrough(undistortedSample(cloud, scan.lines, scan.timing, parameters.features,
+                                               parameters.vertical_correction, motionDuring(world_T_sensor)),
+                             world_T_sensor.middle, parameters.threads);
+    }
+    insert(scan.features, world_T_sensor, parameters.threads);
+  }
+  return is_keyframe;
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,49 @@
+/// \file map_building.h
+/// The paper's "Mapping Building & Distortion Compensation Update" (Eq. 12).
+#pragma once
+
+#include "motion/sweep_pose.h"
+#include "odometry/scan_preparation.h"
+
+#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/odometry/odometry.h>
+#include <pcl_floam/odometry/odometry_parameters.h>
+
+#include <optional>
+
+namespace pcl_floam {
+
+/// The map that is given out: keyframes come in, undistorted, and what has gone leaves it.
+class MapBuilding {
+public:
+  explicit MapBuilding(const OdometryParameters& parameters) : map_(parameters.map) {}
+
+  [[nodiscard]] const KeyframeVoxelMap& map() const { return map_; }
+  /// Whether there was a map before the first scan.
+  [[nodiscard]] bool hasPrior() const { return prior_.has_value(); }
+
+  void clear();
+
+  /// Goes on with a map that was made before, near a pose.
+  void begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sensor);
+
+  /// Takes in features as they were measured, if the sensor has moved far enough or there are none yet.
+  /// \return whether it did
+  bool add(const FeatureSet& measured, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
+
+  /// The same with all that a scan tells: what it sees through has gone.
+  bool add(const CloudView& cloud, const PreparedScan& scan, const SweepPose& world_T_sensor,
+           const OdometryParameters& parameters);
+
+private:
+  [[nodiscard]] bool takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const;
+  void insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads);
+
+  KeyframeVoxelMap map_;
+  std::optional<MapUse> prior_;
+  SE3 world_T_keyframe_;
+  int keyframes_ = 0;
+};
+
+}  // namespace pcl_floam
