@@ -30,9 +30,9 @@ struct FeatureOdometry {
   MotionEstimate motion;  ///< at the last scan that was registered
   SweepPose pose;         ///< of that scan
   bool started = false;
-  bool is_placed = true;  ///< else the pose is a guess, in a map that was made before
+  bool is_placed = true;            ///< else the pose is a guess, in a map that was made before
   std::optional<FeatureSet> first;  ///< the first scan, until its motion is known with the second
-  double sweep_fraction = 0.0;  ///< of that scan
+  double sweep_fraction = 0.0;      ///< of that scan
   int failed_starts = 0;
   double periods = 0.0;  ///< since then
   PreparedScan scan;
@@ -174,9 +174,8 @@ struct FeatureOdometry {
     run.threads = parameters.threads;
     run.sweep = sweepModel(predicted.velocity());
     const KeyframeVoxelMap& map = map_building.map();
-    report.registration =
-        registerFeatures(scan.features, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run,
-                         parameters.registration);
+    report.registration = registerFeatures(
+        scan.features, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, parameters.registration);
     report.milliseconds.registration += watch.lap();
   }
 

@@ -65,8 +65,7 @@ public:
       Correspondence<Factor>& correspondence = correspondences[feature_[n]];
       correspondence.weight = 0.0;
       correspondence.searched_at = correspondence.point;
-      const auto geometry =
-          found_[n].count < kind.neighbors ? std::optional<Shape>() : kind.fit(found_[n], parameters);
+      const auto geometry = found_[n].count < kind.neighbors ? std::optional<Shape>() : kind.fit(found_[n], parameters);
       if (geometry) {
         correspondence.factor = makeFactor(*geometry, correspondence.point);
         correspondence.weight = kind.weights[feature_[n]];

@@ -42,7 +42,7 @@ double sumOfMinors(const Eigen::Matrix3d& m)
 double smallestEigenvalue(const Eigen::Matrix3d& covariance, double minors)
 {
   constexpr int kMostSteps = 30;
-  constexpr double kNegligible = 1e-9;  // of the trace
+  constexpr double kNegligiblePart = 1e-9;  // of the trace
   const double trace = covariance.trace();
   const double determinant = covariance.determinant();
   double value = 0.0;
@@ -54,7 +54,7 @@ double smallestEigenvalue(const Eigen::Matrix3d& covariance, double minors)
     }
     const double step = polynomial / slope;
     value += step;
-    if (step < kNegligible * trace) {
+    if (step < kNegligiblePart * trace) {
       break;
     }
   }

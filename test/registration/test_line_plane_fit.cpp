@@ -77,8 +77,8 @@ TEST(PlaneFit, IsThatOfTheEigenvectors)
     offsets.colwise() -= mean;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(offsets * offsets.transpose() / neighbors.count);
     const Eigen::Vector3d& values = solver.eigenvalues();
-    const bool is_plane = values[1] > parameters.plane_ratio * values[0] &&
-                          values[1] > parameters.plane_spread * values[2];
+    const bool is_plane =
+        values[1] > parameters.plane_ratio * values[0] && values[1] > parameters.plane_spread * values[2];
     const auto plane = fitPlane(neighbors, parameters);
     ASSERT_EQ(plane.has_value(), is_plane) << values.transpose();
     if (!plane) {
