@@ -186,9 +186,9 @@ struct FeatureOdometry {
 
   [[nodiscard]] SweepModel sweepModel(const Vector6& velocity) const
   {
-    constexpr double kMiddle = 0.5;
+    constexpr double kMidSweep = 0.5;
     SweepModel model;
-    model.reference = kMiddle;
+    model.reference = kMidSweep;
     model.twist = scan.sweep_fraction * velocity;
     if (parameters.compensation != CompensationMode::two_stage && is_placed && periods > 0.0) {
       model.follows_pose = true;
