@@ -31,11 +31,14 @@ void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters&
 
 void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
 {
-  takeFeatures(scan, parameters);
   collectPoints(scan, lines, timing, static_cast<double>(parameters.features.min_range),
                 static_cast<double>(parameters.features.max_range), points);
   correctVerticalAngle(parameters.vertical_correction, points);
-  line_of_point_.assign(scan.size, 0);
+}
+
+void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges)
+{
+  line_of_point_.assign(scan_size, 0);
   for (std::size_t m = 0; m < lines.lines(); ++m) {
     for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
       line_of_point_[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])] =

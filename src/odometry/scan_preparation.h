@@ -18,13 +18,14 @@ struct PreparedScan {
   double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
   FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
   std::vector<ScanPoint> points;  ///< all returns
-  std::vector<ScanPoint> edges;   ///< E_k
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
-  /// And the features.
+  /// Apart from the features, so that both can be taken at a time.
   void takePoints(const CloudView& scan, const OdometryParameters& parameters);
+  /// E_k as points, once there are features.
+  void takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges);
   void describeIn(OdometryReport& report) const;
 
 private:

@@ -2,6 +2,7 @@
 /// The odometry by surfaces: its stages, scan by scan, and what they remember.
 #pragma once
 
+#include "common/side_by_side.h"
 #include "motion/scan_clock.h"
 #include "odometry/first_poses.h"
 #include "odometry/map_building.h"
@@ -34,6 +35,7 @@ struct SurfaceOdometry {
   SE3 initial_pose;   ///< of the first scan, at the instant of the parameters
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   PreparedScan scan;
+  Sweep sweep;
   double sweep_fraction = 0.0;          ///< of the last scan that told of it
   double periods = 0.0;                 ///< since the last scan that was registered
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
@@ -45,7 +47,7 @@ struct SurfaceOdometry {
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
-    if (parameters.structure == ScanStructure::scan_lines && !scan.lines.valid()) {
+    if (lacksStructure()) {
       return predictOnly(toString(scan.lines.failure));
     }
     if (!hasEnoughPoints()) {
@@ -77,9 +79,24 @@ struct SurfaceOdometry {
   {
     scan.findStructure(cloud, parameters, clock.period());
     report.milliseconds.scan_lines = watch.lap();
-    scan.takePoints(cloud, parameters);
+    sideBySide(
+        parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
+    scan.takeEdges(cloud.size, sweep.edges);
     report.milliseconds.features = watch.lap();
     scan.describeIn(report);
+  }
+
+  void samplePoints(const CloudView& cloud)
+  {
+    scan.takePoints(cloud, parameters);
+    if (!lacksStructure() && hasEnoughPoints()) {
+      tracker.sample(scan.points, sweep);
+    }
+  }
+
+  [[nodiscard]] bool lacksStructure() const
+  {
+    return parameters.structure == ScanStructure::scan_lines && !scan.lines.valid();
   }
 
   /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
@@ -105,7 +122,8 @@ struct SurfaceOdometry {
     if (first_poses.isOpen()) {
       report.reason = "started again, since the first scan was never matched";
     }
-    tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
+    sweep.periods = 1.0;
+    registerSweep();
     periods = 0.0;
     first_poses.begin();
     first_scans = {scan.features};
@@ -120,8 +138,8 @@ struct SurfaceOdometry {
   {
     constexpr double kShortest = 1e-3;  // periods: stamps that do not advance
     const bool was_open = tracker.isOpen() || !tracker.isTracking();
-    const Tracker::Outcome outcome =
-        tracker.step(scan.points, scan.edges, std::max(periods, kShortest), scan.sweep_fraction);
+    sweep.periods = std::max(periods, kShortest);
+    const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
     report.explained = outcome.registration.points > 0 ? static_cast<double>(report.registration.plane_inliers) /
                                                              static_cast<double>(outcome.registration.points)
@@ -140,6 +158,12 @@ struct SurfaceOdometry {
     }
   }
 
+  Tracker::Outcome registerSweep()
+  {
+    sweep.fraction = scan.sweep_fraction;
+    return tracker.step(sweep);
+  }
+
   void correctFirstPoses()
   {
     const std::vector<SweepPose>& poses = tracker.poses();
@@ -156,7 +180,10 @@ struct SurfaceOdometry {
 
   void updateMap(const CloudView& cloud)
   {
-    report.keyframe = map_building.add(cloud, scan, inWorld(tracker.track().pose()), parameters);
+    const SweepPose world_T_sweep = inWorld(tracker.track().pose());
+    sideBySide(
+        parameters.threads, [&] { tracker.updateMap(sweep); },
+        [&] { report.keyframe = map_building.add(cloud, scan, world_T_sweep, parameters); });
     report.milliseconds.map += watch.lap();
   }
 

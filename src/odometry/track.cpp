@@ -113,6 +113,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
     map_.emplace(side_, settings_);
     map_->insert(first, {SE3(), first.fraction / second.periods * log(found.report.target_T_source)});
     update(second, found);
+    updateMap(second);
   }
   return found;
 }
@@ -151,6 +152,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   SurfaceRegistration found = registerSurfaces(problemFor(sweep));
   if (found.report.hasConverged()) {
     update(sweep, found);
+    updateMap(sweep);
   }
   return found;
 }
@@ -158,6 +160,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 {
   const MotionEstimate before = motion_;
+  is_keyframe_ = false;
   predict(sweep);
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
@@ -275,7 +278,7 @@ void Track::judge(const SurfaceRegistration& registration)
   evidence_ += registration.evidence / kResidualsPerIndependentOne - 0.5 * off.dot(expected.ldlt().solve(off));
 }
 
-/// Mapping Building & Distortion Compensation Update (Eq. 12).
+/// Distortion Compensation Update (Eq. 12).
 void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
 {
   const SE3 last = pose_.middle;
@@ -284,11 +287,17 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   if (settings_.compensation == CompensationMode::two_stage) {
     pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
   }
-  if (sweeps_to_wait_ > 0) {
-    --sweeps_to_wait_;
-  } else if (keeps_map_ && isKeyframe()) {
+  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isKeyframe();
+  sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
+}
+
+/// Mapping Building.
+void Track::updateMap(const Sweep& sweep)
+{
+  if (is_keyframe_) {
     map_->insert(sweep, pose_);
     keyframe_ = pose_.middle;
+    is_keyframe_ = false;
   }
 }
 

@@ -55,9 +55,12 @@ public:
   /// Begins in a map that was made before, of which the pose is roughly known.
   SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);
 
-  /// Takes the next sweep.
+  /// Takes the next sweep; \ref updateMap goes with it.
   /// \param is_judged whether \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, bool is_judged = false);
+
+  /// The map takes in the last sweep, if that is a keyframe.
+  void updateMap(const Sweep& sweep);
 
   /// Nothing has told how the sensor moved along these directions, for so many periods.
   void forgetAlong(const std::vector<WeakDirection>& directions, double periods);
@@ -82,6 +85,7 @@ private:
   std::optional<TrackMap> map_;
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
+  bool is_keyframe_ = false;
   MotionEstimate motion_;
   Vector6 velocity_before_ = Vector6::Zero();
   double periods_between_ = 0.0;  ///< since that velocity; 0: none is known

@@ -1,5 +1,7 @@
 #include "odometry/tracker.h"
 
+#include "common/side_by_side.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
@@ -43,28 +45,20 @@ void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::v
   prior_map_ = {{space, edges, guess, keeps_map}};
 }
 
-Sweep Tracker::sampled(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
-                       double fraction)
+void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
 {
-  Sweep sweep;
   if (side_ == 0.0) {
     const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
     side_ = sampling_.sideFor(points, static_cast<std::size_t>(cells));
   }
   sampling_.sample(points, kMapSpacing * side_, sweep.dense);
   sampling_.sample(sweep.dense, side_, sweep.sample);
-  sweep.edges = edges;
-  sweep.periods = periods;
-  sweep.fraction = fraction;
-  return sweep;
 }
 
-Tracker::Outcome Tracker::step(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges,
-                               double periods, double fraction)
+Tracker::Outcome Tracker::step(const Sweep& sweep)
 {
-  Sweep sweep = sampled(points, edges, periods, fraction);
   if (!isTracking()) {
-    return begin(std::move(sweep));
+    return begin(sweep);
   }
   Outcome outcome;
   if (is_open_) {
@@ -76,14 +70,21 @@ Tracker::Outcome Tracker::step(const std::vector<ScanPoint>& points, const std::
   return outcome;
 }
 
-Tracker::Outcome Tracker::begin(Sweep sweep)
+void Tracker::updateMap(const Sweep& sweep)
+{
+  if (isTracking()) {
+    hypotheses_[best_].track.updateMap(sweep);
+  }
+}
+
+Tracker::Outcome Tracker::begin(const Sweep& sweep)
 {
   constexpr int kMostFailures = 5;  // a bad first sweep must not hold up the rest for ever
   if (!prior_map_.empty()) {
     return beginInPriorMap(sweep);
   }
   if (first_.sample.empty()) {
-    first_ = std::move(sweep);
+    first_ = sweep;
     return {};
   }
   Outcome outcome = findFirstMotion(sweep);
@@ -122,8 +123,13 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   constexpr double kOff = 0.25;  // m: what the likely motions may still be off
   constexpr int kRounds = 2;
   Outcome outcome;
-  for (const FirstMotion& motion : likelyMotions(sweep)) {
-    suppose(sweep, motion.velocity, kOff, kRounds, outcome);
+  const std::vector<FirstMotion> likely = likelyMotions(sweep);
+  std::vector<Track> tracks(likely.size(), Track(settings_, side_));
+  std::vector<SurfaceRegistration> found(likely.size());
+  eachSideBySide(settings_.threads, likely.size(),
+                 [&](std::size_t i) { found[i] = tracks[i].begin(first_, sweep, likely[i].velocity, kOff, kRounds); });
+  for (std::size_t i = 0; i < likely.size(); ++i) {
+    suppose(found[i], std::move(tracks[i]), outcome);
   }
   if (!isTracking()) {
     return outcome;
@@ -147,26 +153,41 @@ std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
   const Sweep first = thinned(first_);
   const Sweep second = thinned(sweep);
   std::vector<FirstMotion> motions;
-  Matrix6 information;
-  const auto look = [&](const Vector6& velocity, double far, int rounds) {
-    Track track(settings_, side_);
-    const RegistrationReport found = track.findMotion(first, second, velocity, far, rounds).report;
-    information = found.information;
-    if (found.hasConverged()) {
-      motions.push_back({log(found.target_T_source) / second.periods, track.evidence()});
-    }
-  };
-  look(Vector6::Zero(), kFar, kFarRounds);
-  look(Vector6::Zero(), kNear, 1);
+  std::vector<FirstLook> looks = {{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}};
+  const Matrix6 information = lookAt(looks, first, second, motions).information;
+  if (motions.empty()) {
+    return {};
+  }
   const Eigen::Vector3d open = leastKnown(information);
-  for (int step = 1; !motions.empty() && step * kNear <= kFastest * sweep.periods; ++step) {
+  looks.clear();
+  for (int step = 1; step * kNear <= kFastest * sweep.periods; ++step) {
     for (const double sign : {1.0, -1.0}) {
       Vector6 velocity = Vector6::Zero();
       velocity.head<3>() = sign * step * kNear / sweep.periods * open;
-      look(velocity, kNear, 1);
+      looks.push_back({velocity, kNear, 1});
     }
   }
+  lookAt(looks, first, second, motions);
   return likeliest(std::move(motions), kNear / sweep.periods);
+}
+
+/// Adds the motions that are found. \return the last one's registration
+RegistrationReport Tracker::lookAt(const std::vector<FirstLook>& looks, const Sweep& first, const Sweep& second,
+                                   std::vector<FirstMotion>& motions) const
+{
+  std::vector<RegistrationReport> found(looks.size());
+  std::vector<double> evidence(looks.size());
+  eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
+    Track track(settings_, side_);
+    found[i] = track.findMotion(first, second, looks[i].velocity, looks[i].far, looks[i].rounds).report;
+    evidence[i] = track.evidence();
+  });
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (found[i].hasConverged()) {
+      motions.push_back({log(found[i].target_T_source) / second.periods, evidence[i]});
+    }
+  }
+  return found.empty() ? RegistrationReport() : found.back();
 }
 
 /// The few whose evidence is best, no two of them nearer than \p same to each other.
@@ -201,12 +222,11 @@ Sweep Tracker::thinned(const Sweep& sweep)
   return thin;
 }
 
-/// Follows the motion that is found from a supposed one, unless it is known already.
-void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds, Outcome& outcome)
+/// Follows the motion that was found from a supposed one, unless it is known already.
+void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& outcome)
 {
   constexpr double kSame = 0.5;  // m
-  Hypothesis hypothesis{Track(settings_, side_), {}, {}, false};
-  const SurfaceRegistration found = hypothesis.track.begin(first_, sweep, velocity, far, rounds);
+  Hypothesis hypothesis{std::move(track), {}, {}, false};
   if (hypotheses_.empty()) {
     outcome.registration = found;
   }
@@ -230,19 +250,23 @@ void Tracker::suppose(const Sweep& sweep, const Vector6& velocity, double far, i
 void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 {
   const std::size_t best = best_;
+  std::vector<SurfaceRegistration> found(hypotheses_.size());
+  eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
+    found[i] = hypotheses_[i].track.step(sweep, true);
+    hypotheses_[i].track.updateMap(sweep);
+  });
   bool any = false;
   for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     Hypothesis& hypothesis = hypotheses_[i];
-    const SurfaceRegistration registration = hypothesis.track.step(sweep, true);
-    hypothesis.weak = registration.report.weak_directions;
-    hypothesis.is_lost = !registration.report.hasConverged();
+    hypothesis.weak = found[i].report.weak_directions;
+    hypothesis.is_lost = !found[i].report.hasConverged();
     if (hypothesis.is_lost) {
-      outcome.registration = any ? outcome.registration : registration;
+      outcome.registration = any ? outcome.registration : found[i];
       continue;
     }
     hypothesis.poses.push_back(hypothesis.track.pose());
     if (!any || hypothesis.track.evidence() > hypotheses_[best_].track.evidence()) {
-      outcome.registration = registration;
+      outcome.registration = found[i];
       best_ = i;
     }
     any = true;
@@ -334,9 +358,11 @@ std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
   Track back(settings_, side_);
   back.begin(sweeps, last);
   for (std::size_t k = n - kTrusted; k-- > 0;) {
-    if (!back.step(backwards(k)).report.hasConverged()) {
+    const Sweep sweep = backwards(k);
+    if (!back.step(sweep).report.hasConverged()) {
       return {};
     }
+    back.updateMap(sweep);
     poses[k] = back.pose().middle;
   }
   const SE3 first_T_world = poses[0].inverse();

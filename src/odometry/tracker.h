@@ -25,10 +25,14 @@ public:
     bool corrected = false;  ///< \ref poses are not what they were
   };
 
-  /// \param points  all returns
-  /// \param periods since the last sweep that was registered
-  Outcome step(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
-               double fraction);
+  /// What is to be registered of all returns, and what enters the map.
+  void sample(const std::vector<ScanPoint>& points, Sweep& sweep);
+
+  /// \param sweep \ref sample d; its periods are those since the last sweep that was registered
+  Outcome step(const Sweep& sweep);
+
+  /// The map takes in the last sweep, if that is a keyframe: apart, since nothing but the next step waits for it.
+  void updateMap(const Sweep& sweep);
 
   [[nodiscard]] bool hasBegun() const { return !first_.sample.empty() || !hypotheses_.empty(); }
   /// Whether a motion is known.
@@ -52,21 +56,26 @@ private:
     Vector6 velocity;
     double evidence = 0.0;
   };
+  struct FirstLook {
+    Vector6 velocity;
+    double far;  ///< m, that it may be off
+    int rounds;
+  };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
     SE3 guess;
     bool keeps_map = true;
   };
 
-  [[nodiscard]] Sweep sampled(const std::vector<ScanPoint>& points, const std::vector<ScanPoint>& edges, double periods,
-                              double fraction);
-  Outcome begin(Sweep sweep);
+  Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
   Outcome findFirstMotion(const Sweep& sweep);
   [[nodiscard]] std::vector<FirstMotion> likelyMotions(const Sweep& sweep);
+  RegistrationReport lookAt(const std::vector<FirstLook>& looks, const Sweep& first, const Sweep& second,
+                            std::vector<FirstMotion>& motions) const;
   [[nodiscard]] static std::vector<FirstMotion> likeliest(std::vector<FirstMotion> motions, double same);
   [[nodiscard]] Sweep thinned(const Sweep& sweep);
-  void suppose(const Sweep& sweep, const Vector6& velocity, double far, int rounds, Outcome& outcome);
+  void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
   void settle();

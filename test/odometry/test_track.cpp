@@ -14,13 +14,33 @@ SE3 path(double t)
   return exp(Vector6(t * (Vector6() << 0.3, 0.02, 0.0, 0.0, 0.0, 0.03).finished()));
 }
 
-PreparedScan prepared(int k)
+struct Prepared {
+  std::vector<ScanPoint> points;
+  std::vector<ScanPoint> edges;
+};
+
+Prepared prepared(int k)
 {
   const auto cloud = toCloud(sweepRoom(Room(), Lidar(), [k](double fraction) { return path(k + fraction); }));
   PreparedScan scan;
   scan.findStructure(viewOf(cloud), OdometryParameters(), 0.0);
   scan.takePoints(viewOf(cloud), OdometryParameters());
-  return scan;
+  scan.takeFeatures(viewOf(cloud), OdometryParameters());
+  std::vector<ScanPoint> edges;
+  scan.takeEdges(cloud.size(), edges);
+  return {scan.points, edges};
+}
+
+/// Takes a scan as the odometry does.
+Tracker::Outcome step(Tracker& tracker, const Prepared& scan, double periods = 1.0)
+{
+  Sweep sweep;
+  tracker.sample(scan.points, sweep);
+  sweep.edges = scan.edges;
+  sweep.periods = periods;
+  const Tracker::Outcome outcome = tracker.step(sweep);
+  tracker.updateMap(sweep);
+  return outcome;
 }
 
 double error(const SE3& pose, int k)
@@ -35,8 +55,8 @@ TEST(Tracker, FollowsAMotionThatItFindsFromTwoSweeps)
 {
   Tracker tracker({});
   for (int k = 0; k < 8; ++k) {
-    const PreparedScan scan = prepared(k);
-    const Tracker::Outcome outcome = tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
+    const Prepared scan = prepared(k);
+    const Tracker::Outcome outcome = step(tracker, scan);
     EXPECT_EQ(outcome.registration.report.hasConverged(), k > 0);
     EXPECT_EQ(tracker.isTracking(), k > 0);
     if (k > 0) {
@@ -49,18 +69,18 @@ TEST(Tracker, ASweepThatFitsNothingChangesNothing)
 {
   Tracker tracker({});
   for (int k = 0; k < 4; ++k) {
-    const PreparedScan scan = prepared(k);
-    tracker.step(scan.points, scan.edges, 1.0, scan.sweep_fraction);
+    const Prepared scan = prepared(k);
+    step(tracker, scan);
   }
   const SE3 before = tracker.track().pose().middle;
-  std::vector<ScanPoint> far_off = prepared(4).points;
-  for (ScanPoint& point : far_off) {
+  Prepared far_off{prepared(4).points, {}};
+  for (ScanPoint& point : far_off.points) {
     point.x += 1000.0F;
   }
-  EXPECT_FALSE(tracker.step(far_off, {}, 1.0, 1.0).registration.report.hasConverged());
+  EXPECT_FALSE(step(tracker, far_off).registration.report.hasConverged());
   EXPECT_EQ(tracker.track().pose().middle.translation, before.translation);
-  const PreparedScan scan = prepared(5);
-  EXPECT_TRUE(tracker.step(scan.points, scan.edges, 2.0, scan.sweep_fraction).registration.report.hasConverged());
+  const Prepared scan = prepared(5);
+  EXPECT_TRUE(step(tracker, scan, 2.0).registration.report.hasConverged());
   EXPECT_LT(error(tracker.track().pose().middle, 5), 0.02);
 }
 
@@ -71,7 +91,7 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   std::vector<SE3> poses;
   double side = 0.0;
   for (int k = 0; k < 5; ++k) {
-    const PreparedScan scan = prepared(k);
+    const Prepared scan = prepared(k);
     side = side > 0.0 ? side : sampling.sideFor(scan.points, 2000);
     Sweep sweep;
     sampling.sample(scan.points, 0.3 * side, sweep.dense);

@@ -60,12 +60,13 @@ protected:
     const CloudView view = viewOf(simulated.cloud);
     PreparedScan scan;
     scan.findStructure(view, {}, 0.1);
+    scan.takeFeatures(view, {});
     scan.takePoints(view, {});
     side_ = side_ > 0.0 ? side_ : sampling_.sideFor(scan.points, kCells);
     pcl_floam::Sweep sweep;
     sampling_.sample(scan.points, kMapSpacing * side_, sweep.dense);
     sampling_.sample(sweep.dense, side_, sweep.sample);
-    sweep.edges = scan.edges;
+    scan.takeEdges(view.size, sweep.edges);
     sweep.fraction = scan.sweep_fraction;
     return sweep;
   }

@@ -1,0 +1,37 @@
+/// \file side_by_side.h
+/// Work that shares nothing, done by threads of its own.
+#pragma once
+
+#include <cstddef>
+
+namespace pcl_floam {
+
+/// Both, at a time if there is more than one thread.
+template <typename First, typename Second>
+void sideBySide(int threads, const First& first, const Second& second)
+{
+#pragma omp parallel sections num_threads(2) if (threads > 1)
+  {
+#pragma omp section
+    first();
+#pragma omp section
+    second();
+  }
+}
+
+/// `work(i)` for all i below \p count, in any order. A single one has all threads for itself: threads that are started
+/// within those of others cost milliseconds.
+template <typename Work>
+void eachSideBySide(int threads, std::size_t count, const Work& work)
+{
+  if (count == 1) {
+    work(0);
+    return;
+  }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
+    work(static_cast<std::size_t>(i));
+  }
+}
+
+}  // namespace pcl_floam
