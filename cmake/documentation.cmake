@@ -33,5 +33,5 @@ if(PCL_FLOAM_WARNINGS_AS_ERRORS)
 endif()
 
 doxygen_add_docs(doc include/pcl_floam cmake/main_page.dox cmake/doc/tuning.md cmake/doc/adding_a_sensor.md
-                 cmake/doc/adding_a_residual.md cmake/doc/parameters.md WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
+                 cmake/doc/adding_a_residual.md WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
                  COMMENT "API documentation in doc/html")
