@@ -82,6 +82,15 @@ Vector6 log(const SE3& target_T_source)
   return xi;
 }
 
+Matrix6 adjoint(const SE3& t)
+{
+  Matrix6 a = Matrix6::Zero();
+  a.topLeftCorner<3, 3>() = t.rotation;
+  a.bottomRightCorner<3, 3>() = t.rotation;
+  a.topRightCorner<3, 3>() = skew(t.translation) * t.rotation;
+  return a;
+}
+
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m)
 {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);

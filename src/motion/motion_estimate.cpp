@@ -29,15 +29,6 @@ constexpr double kLeastRotation = 0.0005;
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
 constexpr double kPerDensity = 0.62;
 
-Block6 adjoint(const SE3& t)
-{
-  Block6 a = Block6::Zero();
-  a.topLeftCorner<3, 3>() = t.rotation;
-  a.bottomRightCorner<3, 3>() = t.rotation;
-  a.topRightCorner<3, 3>() = skew(t.translation) * t.rotation;
-  return a;
-}
-
 /// From the sensor's axes to the world's, for perturbations about the sensor's position.
 Block6 turned(const Eigen::Matrix3d& rotation)
 {
@@ -93,33 +84,67 @@ void MotionEstimate::forgetAlong(const Eigen::Vector3d& direction, double period
   covariance_.block<3, 3>(6, 6) += variance;
 }
 
-void MotionEstimate::predict(double periods)
+void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hint)
 {
   constexpr double kMostSteps = 16.0;
   const double steps = std::clamp(std::ceil(periods), 1.0, kMostSteps);  // noise turns with the sensor on the way
+  const SE3 before = pose_;
+  Growth growth;
   for (int i = 0; i < static_cast<int>(steps); ++i) {
-    advance(periods / steps);
+    advance(periods / steps, growth);
   }
+  const Square12 was = covariance_;
+  covariance_ = growth.of(was);
   periods_ = periods;
+  expected_rotation_ = pose_.rotation;
+  if (hint) {
+    take(*hint, before, was, growth);
+  }
 }
 
-void MotionEstimate::advance(double periods)
+void MotionEstimate::advance(double periods, Growth& growth)
 {
   const SE3 step = exp(periods * velocity_);
   pose_ = pose_ * step;
   pose_.rotation = nearestRotation(pose_.rotation);
-  Eigen::Matrix<double, 12, 12> f = Eigen::Matrix<double, 12, 12>::Identity();
+  Square12 f = Square12::Identity();
   f.topLeftCorner<6, 6>() = adjoint(step.inverse());
   f.topRightCorner<6, 6>() = periods * Block6::Identity();
-  const Eigen::Matrix<double, 12, 12> before = covariance_;
-  covariance_ = f * before * f.transpose();
+  Square12 q = Square12::Zero();
   for (int i = 0; i < 6; ++i) {
-    const double q = (i < 3 ? kTranslation * kTranslation : turn_error_) / kPerDensity;
-    covariance_(i, i) += q * periods * periods * periods / 3.0;
-    covariance_(i, 6 + i) += q * periods * periods / 2.0;
-    covariance_(6 + i, i) += q * periods * periods / 2.0;
-    covariance_(6 + i, 6 + i) += q * periods;
+    const double density = (i < 3 ? kTranslation * kTranslation : turn_error_) / kPerDensity;
+    q(i, i) = density * periods * periods * periods / 3.0;
+    q(i, 6 + i) = q(6 + i, i) = density * periods * periods / 2.0;
+    q(6 + i, 6 + i) = density * periods;
   }
+  growth = {f * growth.transition, Square12(f * growth.noise * f.transpose()) + q};
+}
+
+/// Kalman's filter for a motion that was measured: it says nothing of where the sensor was, but for what that has in
+/// common with how it moved.
+void MotionEstimate::take(const MotionHint& hint, const SE3& before, const Matrix12& was, const Growth& growth)
+{
+  const Eigen::Matrix<double, 6, 6> by_velocity = growth.transition.topRightCorner<6, 6>();
+  const Square12 covariance = was;
+  const Eigen::Matrix<double, 12, 6> common =
+      growth.transition * covariance.rightCols<6>() * by_velocity.transpose() + growth.noise.leftCols<6>();
+  const Block6 motion =
+      by_velocity * covariance.bottomRightCorner<6, 6>() * by_velocity.transpose() + growth.noise.topLeftCorner<6, 6>();
+  const Eigen::LDLT<Block6> innovation(motion + Block6(hint.covariance));
+  const SE3 off = (before.inverse() * pose_).inverse() * hint.last_T_now;
+  Eigen::Matrix<double, 6, 1> error;
+  error << off.translation, logSO3(off.rotation);
+  const Eigen::Matrix<double, 12, 6> gain = innovation.solve(common.transpose()).transpose();
+  shift(gain * error);
+  covariance_ -= gain * common.transpose();
+}
+
+/// \param change perturbation of pose and velocity
+void MotionEstimate::shift(const Eigen::Matrix<double, 12, 1>& change)
+{
+  pose_ = SE3(nearestRotation(pose_.rotation * expSO3(change.segment<3>(3))),
+              pose_.translation + pose_.rotation * Eigen::Vector3d(change.head<3>()));
+  velocity_ += change.tail<6>();
 }
 
 MotionEstimate::Matrix12 MotionEstimate::covariance() const
@@ -131,7 +156,7 @@ MotionEstimate::Matrix12 MotionEstimate::covariance() const
 void MotionEstimate::learnFrom(const SE3& world_T_sensor)
 {
   if (periods_ > 0.0) {
-    const double error = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation).squaredNorm() / 3.0;
+    const double error = logSO3(expected_rotation_.transpose() * world_T_sensor.rotation).squaredNorm() / 3.0;
     turn_error_ += (kTimesLate * error / (periods_ * periods_) - turn_error_) / kMemory;
     turn_error_ = std::max(turn_error_, kLeastRotation * kLeastRotation);
   }
@@ -151,10 +176,7 @@ void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covarianc
   const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise;
   const Eigen::Matrix<double, 12, 6> gain =
       innovation.ldlt().solve(Eigen::Matrix<double, 6, 12>(p.topRows<6>())).transpose();
-  const Eigen::Matrix<double, 12, 1> change = gain * error;
-  pose_ = SE3(nearestRotation(pose_.rotation * expSO3(change.segment<3>(3))),
-              pose_.translation + pose_.rotation * Eigen::Vector3d(change.head<3>()));
-  velocity_ += change.tail<6>();
+  shift(gain * error);
   Square12 left = Square12::Identity();
   left.leftCols<6>() -= gain;
   covariance_ = left * p * left.transpose() + gain * noise * gain.transpose();

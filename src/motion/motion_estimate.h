@@ -3,6 +3,9 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/motion/motion_hint.h>
+
+#include <optional>
 
 namespace pcl_floam {
 
@@ -34,7 +37,8 @@ public:
   void forgetAlong(const Eigen::Vector3d& direction, double periods);
 
   /// Goes on by so many periods.
-  void predict(double periods);
+  /// \param hint of the motion meanwhile
+  void predict(double periods, const std::optional<MotionHint>& hint = std::nullopt);
 
   /// Takes in a measured pose.
   /// \param covariance of its errors, as \ref poseCovariance
@@ -45,14 +49,28 @@ public:
   void update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance);
 
 private:
-  void advance(double periods);
+  /// What becomes of pose and velocity over a time, to first order.
+  struct Growth {
+    Matrix12 transition = Matrix12::Identity();
+    Matrix12 noise = Matrix12::Zero();
+
+    [[nodiscard]] Matrix12 of(const Matrix12& covariance) const
+    {
+      return transition * covariance * transition.transpose() + noise;
+    }
+  };
+
+  void advance(double periods, Growth& growth);
+  void take(const MotionHint& hint, const SE3& before, const Matrix12& was, const Growth& growth);
+  void shift(const Eigen::Matrix<double, 12, 1>& change);
   void learnFrom(const SE3& world_T_sensor);
 
   SE3 pose_;
   Vector6 velocity_ = Vector6::Zero();
   Matrix12 covariance_ = Matrix12::Zero();
-  double periods_ = 0.0;  ///< of the last prediction
-  double turn_error_;     ///< rad^2 per coordinate, squared error of a prediction over one period: the mean of late
+  double periods_ = 0.0;                                             ///< of the last prediction
+  Eigen::Matrix3d expected_rotation_ = Eigen::Matrix3d::Identity();  ///< then, by the velocity alone
+  double turn_error_;  ///< rad^2 per coordinate, squared error of a prediction over one period: the mean of late
 };
 
 }  // namespace pcl_floam

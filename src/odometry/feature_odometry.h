@@ -3,6 +3,7 @@
 #pragma once
 
 #include "motion/motion_estimate.h"
+#include "motion/pending_hint.h"
 #include "motion/scan_clock.h"
 #include "motion/sweep_pose.h"
 #include "odometry/map_building.h"
@@ -35,6 +36,7 @@ struct FeatureOdometry {
   double sweep_fraction = 0.0;      ///< of that scan
   int failed_starts = 0;
   double periods = 0.0;  ///< since then
+  PendingHint hint;
   PreparedScan scan;
   OdometryReport report;
   Stopwatch watch;
@@ -75,11 +77,25 @@ struct FeatureOdometry {
     is_placed = false;
   }
 
+  void setPose(const SE3& world_T_sensor)
+  {
+    if (!started || first) {
+      initial_pose = world_T_sensor;
+    }
+    motion = MotionEstimate(world_T_sensor);
+    pose = {world_T_sensor};
+    if (first) {
+      beginMap(Vector6::Zero());
+    }
+    is_placed = !started || first;
+  }
+
   void beginScan(std::size_t points, std::optional<double> stamp)
   {
     report = OdometryReport();
     report.points = points;
     watch.start();
+    hint.elapse(periods > 0.0);
     periods += clock.tick(stamp);
   }
 
@@ -130,7 +146,7 @@ struct FeatureOdometry {
   {
     constexpr double kLongest = 10.0;  // periods: a velocity is not known for ever
     MotionEstimate predicted = motion;
-    predicted.predict(std::min(periods, kLongest));
+    predicted.predict(std::min(periods, kLongest), hint.sinceLast());
     return predicted;
   }
 

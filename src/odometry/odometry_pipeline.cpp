@@ -116,6 +116,20 @@ const OdometryReport& OdometryPipeline::trackMissing(std::optional<double> stamp
   return impl_->miss(stamp);
 }
 
+void OdometryPipeline::setMotionHint(const MotionHint& hint)
+{
+  hint.validate();
+  impl_->visit([&](auto& odometry) { odometry.hint.give(hint); });
+}
+
+void OdometryPipeline::setPose(const SE3& world_T_sensor)
+{
+  if (!world_T_sensor.isFinite()) {
+    throw std::invalid_argument("the pose that is set is not finite");
+  }
+  impl_->visit([&](auto& odometry) { odometry.setPose(world_T_sensor); });
+}
+
 const OdometryReport& OdometryPipeline::report() const
 {
   return impl_->visit([](auto& odometry) -> const OdometryReport& { return odometry.report; });

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "common/side_by_side.h"
+#include "motion/pending_hint.h"
 #include "motion/scan_clock.h"
 #include "odometry/first_poses.h"
 #include "odometry/map_building.h"
@@ -36,6 +37,7 @@ struct SurfaceOdometry {
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   PreparedScan scan;
   Sweep sweep;
+  PendingHint hint;
   double sweep_fraction = 0.0;          ///< of the last scan that told of it
   double periods = 0.0;                 ///< since the last scan that was registered
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
@@ -70,6 +72,7 @@ struct SurfaceOdometry {
     report = OdometryReport();
     report.points = points;
     watch.start();
+    hint.elapse(periods > 0.0);
     periods += clock.tick(stamp);
     first_poses.elapse(periods);
   }
@@ -161,6 +164,7 @@ struct SurfaceOdometry {
   Tracker::Outcome registerSweep()
   {
     sweep.fraction = scan.sweep_fraction;
+    sweep.hint = hint.sinceLast();
     return tracker.step(sweep);
   }
 
@@ -243,8 +247,19 @@ struct SurfaceOdometry {
   {
     constexpr double kLongest = 10.0;  // periods
     MotionEstimate motion = tracker.track().motion();
-    motion.predict(std::min(periods, kLongest));
+    motion.predict(std::min(periods, kLongest), hint.sinceLast());
     return motion;
+  }
+
+  void setPose(const SE3& world_T_sensor)
+  {
+    if (!tracker.isTracking()) {
+      initial_pose = world_T_sensor;
+      tracker.place(world_T_sensor);
+      return;
+    }
+    const SweepPose during{SE3(), poseNow().twist};
+    tracker.place(world_T_track.inverse() * world_T_sensor * during.at(fractionOf(parameters.pose_instant)).inverse());
   }
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)

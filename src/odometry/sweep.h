@@ -3,7 +3,9 @@
 #pragma once
 
 #include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/motion/motion_hint.h>
 
+#include <optional>
 #include <vector>
 
 namespace pcl_floam {
@@ -16,6 +18,7 @@ struct Sweep {
   double periods = 1.0;           ///< since the sweep before, > 0
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
+  std::optional<MotionHint> hint;  ///< of the motion since the sweep before
 };
 
 }  // namespace pcl_floam

@@ -18,6 +18,11 @@ constexpr double kKeyframeSides = 0.3;
 constexpr double kKeyframeTurn = 0.1;
 /// Standard deviations that a registration begins with.
 constexpr double kLook = 3.0;
+/// How far off a pose may be that somebody gives, m and rad.
+constexpr double kGivenOff = 3.0;
+constexpr double kGivenTurned = 0.25;
+/// Sweeps until the velocity is known again where the sensor has been sought.
+constexpr int kUntilKnown = 3;
 
 Matrix6 covarianceOf(double translation, double rotation)
 {
@@ -46,6 +51,15 @@ Matrix12 oneMotion(double periods)
   covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
   covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
   return covariance;
+}
+
+/// How far a motion is from what was told of it, in its standard deviations.
+double squaredError(const SE3& motion, const MotionHint& hint)
+{
+  const SE3 off = hint.last_T_now.inverse() * motion;
+  Eigen::Matrix<double, 6, 1> error;
+  error << off.translation, logSO3(off.rotation);
+  return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
 }
 
 void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
@@ -102,6 +116,9 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     first_T_second = found.report.target_T_source;
   }
   evidence_ = found.evidence / kResidualsPerIndependentOne;
+  if (second.hint) {
+    evidence_ -= 0.5 * squaredError(first_T_second, *second.hint);
+  }
   return found;
 }
 
@@ -143,12 +160,10 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
 
 SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map)
 {
-  constexpr double kFar = 3.0;      // m
-  constexpr double kTurned = 0.25;  // rad
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
   keyframe_ = guess;
-  settle(sweep, guess, kFar, kTurned);
+  settle(sweep, guess, kGivenOff, kGivenTurned);
   SurfaceRegistration found = registerSurfaces(problemFor(sweep));
   if (found.report.hasConverged()) {
     update(sweep, found);
@@ -182,8 +197,12 @@ void Track::predict(const Sweep& sweep)
   constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   velocity_before_ = motion_.velocity();
   periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
-  motion_.predict(sweep.periods);
-  if (sweep.periods > kLong) {
+  motion_.predict(sweep.periods, sweep.hint);
+  if (placed_) {
+    settle(sweep, *placed_, kGivenOff, kGivenTurned);
+    sweeps_to_wait_ = kUntilKnown;
+    placed_.reset();
+  } else if (sweep.periods > kLong) {
     seekAllAround(sweep);
   }
 }
@@ -192,7 +211,6 @@ void Track::predict(const Sweep& sweep)
 void Track::seekAllAround(const Sweep& sweep)
 {
   constexpr int kTurns = 18;
-  constexpr int kUntilKnown = 3;   // sweeps until the velocity is known again
   constexpr double kReach = 1.0;   // m
   constexpr double kTurned = 0.4;  // rad
   SurfaceProblem as_predicted = problemFor(sweep);

@@ -62,6 +62,9 @@ public:
   /// The map takes in the last sweep, if that is a keyframe.
   void updateMap(const Sweep& sweep);
 
+  /// The next sweep is sought around here.
+  void place(const SE3& pose) { placed_ = pose; }
+
   /// Nothing has told how the sensor moved along these directions, for so many periods.
   void forgetAlong(const std::vector<WeakDirection>& directions, double periods);
 
@@ -91,6 +94,7 @@ private:
   double periods_between_ = 0.0;  ///< since that velocity; 0: none is known
   SweepPose pose_;
   SE3 keyframe_;
+  std::optional<SE3> placed_;
   double evidence_ = 0.0;
 };
 

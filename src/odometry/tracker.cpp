@@ -45,6 +45,16 @@ void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::v
   prior_map_ = {{space, edges, guess, keeps_map}};
 }
 
+void Tracker::place(const SE3& pose)
+{
+  for (PriorMap& prior : prior_map_) {
+    prior.guess = pose;
+  }
+  for (Hypothesis& hypothesis : hypotheses_) {
+    hypothesis.track.place(pose);
+  }
+}
+
 void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
 {
   if (side_ == 0.0) {
@@ -142,8 +152,8 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   return outcome;
 }
 
-/// From rest, near and far, and along the direction that this leaves open. Each is looked at with few points, and the
-/// likeliest are told.
+/// From rest, near and far, along the direction that this leaves open, and as it is told. Each is looked at with few
+/// points, and the likeliest are told.
 std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
 {
   constexpr double kNear = 0.5;     // m
@@ -160,6 +170,9 @@ std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
   }
   const Eigen::Vector3d open = leastKnown(information);
   looks.clear();
+  if (sweep.hint) {
+    looks.push_back({log(sweep.hint->last_T_now) / sweep.periods, kNear, 1});
+  }
   for (int step = 1; step * kNear <= kFastest * sweep.periods; ++step) {
     for (const double sign : {1.0, -1.0}) {
       Vector6 velocity = Vector6::Zero();
@@ -345,6 +358,7 @@ std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
     Sweep sweep = kept_[k];
     sweep.periods = k + 1 < n ? kept_[k + 1].periods : 1.0;
     sweep.fraction = -sweep.fraction;
+    sweep.hint.reset();
     return sweep;
   };
   std::vector<Sweep> sweeps;

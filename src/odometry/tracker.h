@@ -20,6 +20,9 @@ public:
   void localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
                   const SE3& guess, bool keeps_map);
 
+  /// The next sweep is sought around here.
+  void place(const SE3& pose);
+
   struct Outcome {
     SurfaceRegistration registration;
     bool corrected = false;  ///< \ref poses are not what they were

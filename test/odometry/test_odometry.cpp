@@ -266,6 +266,60 @@ TEST(Odometry, StampsTellOfAGap)
   }
 }
 
+MotionHint wheelsOf(const Path& path, int k)
+{
+  constexpr double kSigma = 1e-3;
+  return {path(k - 0.5).inverse() * path(k + 0.5), kSigma * kSigma * Matrix6(Matrix6::Identity())};
+}
+
+TEST(Odometry, AHintTakesItOverScansThatAreMissing)
+{
+  double without = 0.0;
+  for (const bool told : {false, true}) {
+    Odometry<PointXYZIRT> odometry(defaults());
+    for (int k = 0; k < kScans; ++k) {
+      const bool missing = k >= 8 && k < 12;
+      if (told && k > 0) {
+        odometry.setMotionHint(wheelsOf(acceleratedPath, k));
+      }
+      const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(acceleratedPath, k));
+      EXPECT_EQ(report.state == TrackingState::predicted, missing) << "scan " << k;
+      const double off = error(report.world_T_sensor, acceleratedPath, k);
+      without = told || k != 11 ? without : off;
+      // By features the first sweep afterwards is undistorted with the mean motion of all that time.
+      EXPECT_TRUE(!told || off < (k == 12 ? 0.07 : 0.04)) << "scan " << k << ": " << off;
+    }
+  }
+  EXPECT_GT(without, 0.1) << "else nothing was shown";
+  Odometry<PointXYZIRT> odometry(defaults());
+  EXPECT_THROW(odometry.setMotionHint({SE3(), Matrix6::Zero()}), std::invalid_argument);
+}
+
+TEST(Odometry, APoseThatIsSetKeepsTheMap)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    odometry.track(sweep(steadyPath, k));
+  }
+  const std::size_t points = odometry.map().size(FeatureKind::plane);
+  // Carried away while nobody looked.
+  const auto elsewhere = [](double t) {
+    return steadyPath(4.0) * SE3(expSO3({0.0, 0.0, 1.2}), Eigen::Vector3d(0.2, 0.5, 0.1)) *
+           exp(Vector6(t * Vector6::Unit(0) * 0.2));
+  };
+  const SE3 map_T_world = steadyPath(1.0).inverse();
+  odometry.setPose(map_T_world * elsewhere(1.0) * exp((Vector6() << 0.4, -0.3, 0.1, 0.02, -0.02, 0.08).finished()));
+  for (int k = 0; k < 6; ++k) {
+    EXPECT_EQ(odometry.track(sweep(elsewhere, k)).state, TrackingState::tracked);
+    const SE3 off = (map_T_world * elsewhere(k + 1.0)).inverse() * odometry.pose();
+    EXPECT_LT(off.translation.norm(), k < 2 ? 0.15 : 0.05) << "scan " << k;
+  }
+  EXPECT_GE(odometry.map().size(FeatureKind::plane), points);
+  SE3 nowhere;
+  nowhere.translation.x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(odometry.setPose(nowhere), std::invalid_argument);
+}
+
 TEST(Odometry, StartsWithTheFirstUsableScan)
 {
   Odometry<PointXYZIRT> odometry(defaults());

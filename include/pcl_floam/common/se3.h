@@ -75,6 +75,9 @@ struct SE3 {
 /// Inverse of \ref exp, as used in Eq. 2 and Eq. 12a; rotation part in [0, pi].
 [[nodiscard]] Vector6 log(const SE3& target_T_source);
 
+/// How a perturbation in the source's axes looks in the target's: t exp(xi) = exp(adjoint(t) xi) t.
+[[nodiscard]] Matrix6 adjoint(const SE3& t);
+
 /// The nearest proper rotation (in the Frobenius norm) to a matrix that rounding has bent.
 [[nodiscard]] Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m);
 

@@ -4,6 +4,7 @@
 
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/motion/motion_hint.h>
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
@@ -47,6 +48,17 @@ public:
 
   /// Tells that a scan is missing (unreadable, dropped): the pose moves on by prediction.
   const OdometryReport& trackMissing(std::optional<double> stamp = std::nullopt);
+
+  /// What wheels, an IMU or another estimator tell of the motion to the scan that comes next (or is missing next):
+  /// beside what the scans tell, and in place of it where these leave a direction open. For that scan only. \throws
+  /// std::invalid_argument as MotionHint::validate
+  void setMotionHint(const MotionHint& hint);
+
+  /// The sensor is at another place of the map than was thought: the next scan is sought there. Map and parameters
+  /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with. Before
+  /// the second scan it is the pose of the first. \param world_T_sensor of the next scan, within about 2 m and 10
+  /// degrees \throws std::invalid_argument for a pose that is not finite
+  void setPose(const SE3& world_T_sensor);
 
   /// The last report.
   [[nodiscard]] const OdometryReport& report() const;

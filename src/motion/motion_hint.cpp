@@ -1,0 +1,28 @@
+#include <pcl_floam/motion/motion_hint.h>
+
+#include <Eigen/Cholesky>
+
+#include <stdexcept>
+
+namespace pcl_floam {
+
+void MotionHint::validate() const
+{
+  const Eigen::Matrix<double, 6, 6> c = covariance;
+  if (!last_T_now.isFinite() || !c.allFinite()) {
+    throw std::invalid_argument("motion hint: it is not finite");
+  }
+  constexpr double kRounding = 1e-9;
+  const bool is_symmetric = (c - c.transpose()).norm() <= kRounding * c.norm();
+  if (!is_symmetric || Eigen::LLT<Eigen::Matrix<double, 6, 6>>(c).info() != Eigen::Success) {
+    throw std::invalid_argument("motion hint: the covariance is not symmetric and positive definite");
+  }
+}
+
+MotionHint operator*(const MotionHint& first, const MotionHint& second)
+{
+  const Matrix6 back = adjoint(second.last_T_now.inverse());
+  return {first.last_T_now * second.last_T_now, back * first.covariance * back.transpose() + second.covariance};
+}
+
+}  // namespace pcl_floam
