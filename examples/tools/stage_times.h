@@ -15,9 +15,8 @@ struct Stage {
 };
 
 /// In the order of the data flow, the total last.
-inline constexpr std::array<Stage, 6> kStages = {{{"scan_lines", &StageTimes::scan_lines},
+inline constexpr std::array<Stage, 5> kStages = {{{"scan_lines", &StageTimes::scan_lines},
                                                   {"features", &StageTimes::features},
-                                                  {"compensation", &StageTimes::compensation},
                                                   {"registration", &StageTimes::registration},
                                                   {"map", &StageTimes::map},
                                                   {"total", &StageTimes::total}}};

@@ -13,20 +13,32 @@ public:
   /// Of the motion to the scan that comes next.
   void give(const MotionHint& hint) { next_ = hint; }
 
-  /// That scan comes. \param goes_on whether scans since the last one that was registered told nothing
-  void elapse(bool goes_on)
+  /// That scan comes.
+  void elapse()
   {
-    if (!goes_on) {
+    if (place_ == Place::is_given) {
+      since_.reset();
+    } else if (place_ == Place::is_known) {
       since_ = next_;
     } else {
       since_ = since_ && next_ ? std::optional<MotionHint>(*since_ * *next_) : std::nullopt;
     }
     next_.reset();
+    place_ = Place::is_sought;
   }
+
+  /// The last scan was registered.
+  void reach() { place_ = Place::is_known; }
+
+  /// The pose of the scan that comes next was given: what was told of the way there counts no more.
+  void placeNext() { place_ = Place::is_given; }
 
   [[nodiscard]] const std::optional<MotionHint>& sinceLast() const { return since_; }
 
 private:
+  enum class Place { is_known, is_sought, is_given };
+
+  Place place_ = Place::is_known;
   std::optional<MotionHint> next_;
   std::optional<MotionHint> since_;
 };

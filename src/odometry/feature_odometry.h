@@ -13,14 +13,20 @@
 #include <pcl_floam/odometry/odometry.h>
 #include <pcl_floam/registration/feature_registration.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <utility>
 
 namespace pcl_floam {
 
 /// Within the pipeline, poses are those of mid-sweep: there an error of the assumed motion moves the sweep's two halves
 /// apart but not its pose, which at the end (the paper's instant) the next motion would take up with the opposite sign.
 struct FeatureOdometry {
-  static constexpr double kFarthestErrors = 3.0;  ///< standard deviations
+  static constexpr double kErrors = 3.0;    ///< standard deviations that the prediction may be off ...
+  static constexpr double kFarthest = 3.0;  ///< ... and m
+  /// Periods: what moves in less cannot be told from the poses' errors.
+  static constexpr double kShortest = 0.5;
 
   explicit FeatureOdometry(const OdometryParameters& p) : parameters(p), map_building(p), clock(p.scan_period) {}
 
@@ -33,9 +39,10 @@ struct FeatureOdometry {
   bool started = false;
   bool is_placed = true;            ///< else the pose is a guess, in a map that was made before
   std::optional<FeatureSet> first;  ///< the first scan, until its motion is known with the second
-  double sweep_fraction = 0.0;      ///< of that scan
+  int scans_to_wait = 0;            ///< until the map takes in scans again
+  double sweep_fraction = 0.0;      ///< of the last scan that was registered
   int failed_starts = 0;
-  double periods = 0.0;  ///< since then
+  double periods = 0.0;  ///< since that scan
   PendingHint hint;
   PreparedScan scan;
   OdometryReport report;
@@ -52,12 +59,12 @@ struct FeatureOdometry {
       return start();
     }
     const MotionEstimate predicted = first ? findFirstMotion() : predictMotion();
-    estimatePose(predicted, kFarthestErrors * positionError(predicted));
+    estimatePose(predicted, std::min(kFarthest, kErrors * positionError(predicted)));
     if (!report.registration.hasConverged()) {
       return first ? failToStart() : predictOnly(toString(report.registration.termination));
     }
     updateMotion(predicted);
-    report.keyframe = map_building.add(cloud, scan, pose, parameters);
+    updateMap(cloud);
     report.milliseconds.map += watch.lap();
     finish(TrackingState::tracked);
   }
@@ -71,23 +78,37 @@ struct FeatureOdometry {
   void localizeIn(KeyframeVoxelMap given, MapUse use)
   {
     map_building.begin(std::move(given), use, initial_pose);
-    motion = MotionEstimate(initial_pose);
-    pose = {initial_pose};
+    beginNear(initial_pose);
     started = true;
-    is_placed = false;
   }
 
   void setPose(const SE3& world_T_sensor)
   {
+    hint.placeNext();
     if (!started || first) {
       initial_pose = world_T_sensor;
+      forgetFirstMotion();
+      return;
     }
+    beginNear(world_T_sensor);
+  }
+
+  /// In the map that there is.
+  void beginNear(const SE3& world_T_sensor)
+  {
     motion = MotionEstimate(world_T_sensor);
     pose = {world_T_sensor};
+    periods = 0.0;
+    is_placed = false;
+  }
+
+  void forgetFirstMotion()
+  {
+    motion = MotionEstimate(initial_pose);
+    pose = {initial_pose};
     if (first) {
       beginMap(Vector6::Zero());
     }
-    is_placed = !started || first;
   }
 
   void beginScan(std::size_t points, std::optional<double> stamp)
@@ -95,7 +116,7 @@ struct FeatureOdometry {
     report = OdometryReport();
     report.points = points;
     watch.start();
-    hint.elapse(periods > 0.0);
+    hint.elapse();
     periods += clock.tick(stamp);
   }
 
@@ -121,6 +142,7 @@ struct FeatureOdometry {
     started = true;
     failed_starts = 0;
     periods = 0.0;
+    hint.reach();
     first = scan.features;
     motion = MotionEstimate(initial_pose);
     pose = {initial_pose};
@@ -135,6 +157,7 @@ struct FeatureOdometry {
   {
     constexpr int kMostFailures = 5;
     if (++failed_starts < kMostFailures) {
+      forgetFirstMotion();
       return predictOnly(toString(report.registration.termination));
     }
     start();
@@ -142,11 +165,12 @@ struct FeatureOdometry {
   }
 
   // Motion Estimation (Eq. 2)
-  [[nodiscard]] MotionEstimate predictMotion() const
+  [[nodiscard]] MotionEstimate predictMotion() const { return predictMotion(periods); }
+
+  [[nodiscard]] MotionEstimate predictMotion(double over) const
   {
-    constexpr double kLongest = 10.0;  // periods: a velocity is not known for ever
     MotionEstimate predicted = motion;
-    predicted.predict(std::min(periods, kLongest), hint.sinceLast());
+    predicted.predict(over, hint.sinceLast());
     return predicted;
   }
 
@@ -158,12 +182,13 @@ struct FeatureOdometry {
     constexpr double kFar = 2.0;  // m
     MotionEstimate predicted = predictMotion();
     double far = kFar;
-    for (int round = 0; round < kRounds && periods > 0.0; ++round, far *= 0.5) {
+    for (int round = 0; round < kRounds; ++round, far *= 0.5) {
       estimatePose(predicted, far);
       if (!report.registration.hasConverged()) {
         break;
       }
-      const Vector6 velocity = log(pose.middle.inverse() * report.registration.target_T_source) / periods;
+      const Vector6 velocity =
+          log(pose.middle.inverse() * report.registration.target_T_source) / std::max(periods, kShortest);
       beginMap(scan.sweep_fraction * velocity);
       motion = MotionEstimate(pose.middle, velocity);
       predicted = predictMotion();
@@ -206,7 +231,7 @@ struct FeatureOdometry {
     SweepModel model;
     model.reference = kMidSweep;
     model.twist = scan.sweep_fraction * velocity;
-    if (parameters.compensation != CompensationMode::two_stage && is_placed && periods > 0.0) {
+    if (parameters.compensation != CompensationMode::two_stage && is_placed && periods >= kShortest) {
       model.follows_pose = true;
       model.held_pose = pose.middle;
       model.sweep_per_motion = scan.sweep_fraction / periods;
@@ -224,14 +249,27 @@ struct FeatureOdometry {
     if (is_placed) {
       motion.correct(report.registration.target_T_source, report.registration.covariance);
     } else {
+      constexpr int kUntilKnown = 3;
       motion = MotionEstimate(report.registration.target_T_source);
       is_placed = true;
+      scans_to_wait = kUntilKnown;
     }
     pose = {report.registration.target_T_source, report.registration.sweep_twist};
-    if (parameters.compensation == CompensationMode::two_stage && periods > 0.0) {
+    if (parameters.compensation == CompensationMode::two_stage && periods >= kShortest) {
       pose.twist = scan.sweep_fraction / periods * log(last.inverse() * pose.middle);
     }
     periods = 0.0;
+    hint.reach();
+  }
+
+  /// Where the pose was given, once the velocity is known.
+  void updateMap(const CloudView& cloud)
+  {
+    if (scans_to_wait > 0) {
+      --scans_to_wait;
+    } else {
+      report.keyframe = map_building.add(cloud, scan, pose, parameters);
+    }
   }
 
   /// A scan that told nothing, or none at all.
@@ -248,7 +286,8 @@ struct FeatureOdometry {
     report.world_T_sensor = started ? pose.at(instant) : initial_pose;
     report.covariance = report.registration.covariance;
     if (state == TrackingState::predicted) {
-      const MotionEstimate predicted = predictMotion();
+      constexpr double kLongest = 10.0;  // periods: a velocity is not known for ever
+      const MotionEstimate predicted = predictMotion(std::min(periods, kLongest));
       report.world_T_sensor = SweepPose{predicted.pose(), sweep_fraction * predicted.velocity()}.at(instant);
       report.covariance = predicted.poseCovariance();
     }

@@ -7,6 +7,7 @@
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
+#include <cstdint>
 #include <vector>
 
 namespace pcl_floam {

@@ -13,8 +13,10 @@
 
 #include <pcl_floam/odometry/odometry.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -72,7 +74,7 @@ struct SurfaceOdometry {
     report = OdometryReport();
     report.points = points;
     watch.start();
-    hint.elapse(periods > 0.0);
+    hint.elapse();
     periods += clock.tick(stamp);
     first_poses.elapse(periods);
   }
@@ -128,6 +130,7 @@ struct SurfaceOdometry {
     sweep.periods = 1.0;
     registerSweep();
     periods = 0.0;
+    hint.reach();
     first_poses.begin();
     first_scans = {scan.features};
     map_building.clear();
@@ -152,6 +155,7 @@ struct SurfaceOdometry {
       return;
     }
     periods = 0.0;
+    hint.reach();
     if (was_open && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
       first_poses.add();
@@ -253,13 +257,27 @@ struct SurfaceOdometry {
 
   void setPose(const SE3& world_T_sensor)
   {
+    hint.placeNext();
     if (!tracker.isTracking()) {
       initial_pose = world_T_sensor;
       tracker.place(world_T_sensor);
+      moveFirstScan();
       return;
     }
-    const SweepPose during{SE3(), poseNow().twist};
-    tracker.place(world_T_track.inverse() * world_T_sensor * during.at(fractionOf(parameters.pose_instant)).inverse());
+    tracker.place(world_T_track.inverse() * world_T_sensor);
+    first_poses.close();
+    first_scans.clear();
+    periods = 0.0;
+  }
+
+  void moveFirstScan()
+  {
+    if (!first_scans.empty()) {
+      first_poses.begin();
+      first_poses.give(initial_pose);
+      map_building.clear();
+      map_building.add(first_scans.front(), {initial_pose}, parameters);
+    }
   }
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)

@@ -1,7 +1,5 @@
 #include "odometry/track.h"
 
-#include "registration/sweep_points.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
@@ -62,35 +60,7 @@ double squaredError(const SE3& motion, const MotionHint& hint)
   return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
 }
 
-void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
-{
-  std::vector<Eigen::Vector3d> places;
-  std::vector<std::uint32_t> lasers;
-  places.reserve(points.size());
-  lasers.reserve(points.size());
-  for (const ScanPoint& point : points) {
-    places.push_back(sensor.at(point));
-    lasers.push_back(point.laser);
-  }
-  map.beginKeyframe();
-  map.insert(places.data(), lasers.data(), places.size());
-}
-
 }  // namespace
-
-TrackMap::TrackMap(double side, const TrackSettings& settings)
-    : space(side), edges(side, SurfaceShapes::lines), horizon(settings.horizon)
-{
-}
-
-void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
-{
-  const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
-  insertInto(space, sweep.dense, sensor);
-  insertInto(edges, sweep.edges, sensor);
-  space.crop(pose.middle.translation, horizon);
-  edges.crop(pose.middle.translation, horizon);
-}
 
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
                                       int rounds)
@@ -100,7 +70,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
   SE3 first_T_second = exp(second.periods * velocity);
   for (int round = 0; round < rounds; ++round, far *= 0.5) {
     const Vector6 motion = log(first_T_second) / second.periods;
-    map_.emplace(side_, settings_);
+    map_.emplace(side_, settings_.horizon);
     map_->insert(first, {SE3(), first.fraction * motion});
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
@@ -127,7 +97,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 {
   SurfaceRegistration found = findMotion(first, second, velocity, far, rounds);
   if (found.report.hasConverged()) {
-    map_.emplace(side_, settings_);
+    map_.emplace(side_, settings_.horizon);
     map_->insert(first, {SE3(), first.fraction / second.periods * log(found.report.target_T_source)});
     update(second, found);
     updateMap(second);
@@ -138,7 +108,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses)
 {
   constexpr double kKnown = 0.01;  // m and rad
-  map_.emplace(side_, settings_);
+  map_.emplace(side_, settings_.horizon);
   Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);
@@ -198,10 +168,8 @@ void Track::predict(const Sweep& sweep)
   velocity_before_ = motion_.velocity();
   periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
   motion_.predict(sweep.periods, sweep.hint);
-  if (placed_) {
-    settle(sweep, *placed_, kGivenOff, kGivenTurned);
-    sweeps_to_wait_ = kUntilKnown;
-    placed_.reset();
+  if (is_placed_) {
+    settle(sweep, pose_.middle, kGivenOff, kGivenTurned);
   } else if (sweep.periods > kLong) {
     seekAllAround(sweep);
   }
@@ -246,6 +214,13 @@ void Track::settle(const Sweep& sweep, const SE3& guess, double far, double far_
   motion_ = MotionEstimate();
   motion_.place(place, covarianceOf(far, far_turn));
   periods_between_ = 0.0;
+}
+
+void Track::place(const SE3& pose)
+{
+  motion_ = MotionEstimate(pose);
+  pose_ = {pose};
+  is_placed_ = true;
 }
 
 void Track::forgetAlong(const std::vector<WeakDirection>& directions, double periods)
@@ -305,6 +280,8 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   if (settings_.compensation == CompensationMode::two_stage) {
     pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
   }
+  sweeps_to_wait_ = is_placed_ ? kUntilKnown : sweeps_to_wait_;
+  is_placed_ = false;
   is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isKeyframe();
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }

@@ -2,10 +2,10 @@
 /// One hypothesis of how the sensor has moved: a motion and the map that goes with it.
 #pragma once
 
-#include "map/voxel_pyramid.h"
 #include "motion/motion_estimate.h"
 #include "motion/sweep_pose.h"
 #include "odometry/sweep.h"
+#include "odometry/track_map.h"
 #include "registration/surface_registration.h"
 
 #include <pcl_floam/filters/motion_compensation_mode.h>
@@ -22,17 +22,6 @@ struct TrackSettings {
   int threads = 1;
 };
 
-/// Space (all points) and edges (the paper's features), as pyramids of voxels.
-struct TrackMap {
-  TrackMap(double side, const TrackSettings& settings);
-
-  void insert(const Sweep& sweep, const SweepPose& pose);
-
-  VoxelPyramid space;
-  VoxelPyramid edges;
-  double horizon;
-};
-
 /// Predict, register, judge, update.
 class Track {
 public:
@@ -41,8 +30,9 @@ public:
 
   /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the
   /// second registered with what comes out, again and again, looking less and less far. Tells the pose of the second
-  /// and the evidence for it; the track has not begun. \param velocity per period, to begin with \param far      m,
-  /// that it may be off
+  /// and the evidence for it; the track has not begun.
+  /// \param velocity per period, to begin with
+  /// \param far      m, that it may be off
   SurfaceRegistration findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
                                  int rounds);
 
@@ -63,7 +53,7 @@ public:
   void updateMap(const Sweep& sweep);
 
   /// The next sweep is sought around here.
-  void place(const SE3& pose) { placed_ = pose; }
+  void place(const SE3& pose);
 
   /// Nothing has told how the sensor moved along these directions, for so many periods.
   void forgetAlong(const std::vector<WeakDirection>& directions, double periods);
@@ -71,7 +61,6 @@ public:
   [[nodiscard]] const MotionEstimate& motion() const { return motion_; }
   [[nodiscard]] const SweepPose& pose() const { return pose_; }
   [[nodiscard]] double evidence() const { return evidence_; }
-  [[nodiscard]] const std::optional<TrackMap>& map() const { return map_; }
 
 private:
   void predict(const Sweep& sweep);
@@ -94,7 +83,7 @@ private:
   double periods_between_ = 0.0;  ///< since that velocity; 0: none is known
   SweepPose pose_;
   SE3 keyframe_;
-  std::optional<SE3> placed_;
+  bool is_placed_ = false;  ///< by somebody, roughly
   double evidence_ = 0.0;
 };
 

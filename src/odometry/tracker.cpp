@@ -1,9 +1,8 @@
 #include "odometry/tracker.h"
 
 #include "common/side_by_side.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include "odometry/backward_pass.h"
+#include "odometry/first_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +26,6 @@ constexpr double kHopeless = 100.0;
 /// So many are followed.
 constexpr std::size_t kMostHypotheses = 4;
 
-/// The direction along which the position is known least.
-Eigen::Vector3d leastKnown(const Matrix6& information)
-{
-  const Eigen::Matrix<double, 6, 6> h = information;
-  const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
-                                                                    h.bottomRightCorner<3, 3>().inverse() *
-                                                                    h.bottomLeftCorner<3, 3>();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(translation).eigenvectors().col(0);
-}
-
 }  // namespace
 
 void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
@@ -50,8 +39,9 @@ void Tracker::place(const SE3& pose)
   for (PriorMap& prior : prior_map_) {
     prior.guess = pose;
   }
-  for (Hypothesis& hypothesis : hypotheses_) {
-    hypothesis.track.place(pose);
+  if (isTracking()) {
+    decide(std::move(hypotheses_[best_]));
+    hypotheses_[0].track.place(pose);
   }
 }
 
@@ -109,7 +99,7 @@ Tracker::Outcome Tracker::begin(const Sweep& sweep)
 Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
 {
   const PriorMap& prior = prior_map_[0];
-  TrackMap map(side_, settings_);
+  TrackMap map(side_, settings_.horizon);
   // Many sweeps made such a map: no point of it is of one laser's pattern.
   std::uint32_t laser = 0;
   for (const Eigen::Vector3d& point : prior.space) {
@@ -133,11 +123,11 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   constexpr double kOff = 0.25;  // m: what the likely motions may still be off
   constexpr int kRounds = 2;
   Outcome outcome;
-  const std::vector<FirstMotion> likely = likelyMotions(sweep);
+  const std::vector<Vector6> likely = likelyFirstMotions(first_, sweep, settings_, side_);
   std::vector<Track> tracks(likely.size(), Track(settings_, side_));
   std::vector<SurfaceRegistration> found(likely.size());
   eachSideBySide(settings_.threads, likely.size(),
-                 [&](std::size_t i) { found[i] = tracks[i].begin(first_, sweep, likely[i].velocity, kOff, kRounds); });
+                 [&](std::size_t i) { found[i] = tracks[i].begin(first_, sweep, likely[i], kOff, kRounds); });
   for (std::size_t i = 0; i < likely.size(); ++i) {
     suppose(found[i], std::move(tracks[i]), outcome);
   }
@@ -150,89 +140,6 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   first_ = {};
   outcome.corrected = true;
   return outcome;
-}
-
-/// From rest, near and far, along the direction that this leaves open, and as it is told. Each is looked at with few
-/// points, and the likeliest are told.
-std::vector<Tracker::FirstMotion> Tracker::likelyMotions(const Sweep& sweep)
-{
-  constexpr double kNear = 0.5;     // m
-  constexpr double kFar = 2.0;      // m
-  constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
-  constexpr int kFarRounds = 5;
-  const Sweep first = thinned(first_);
-  const Sweep second = thinned(sweep);
-  std::vector<FirstMotion> motions;
-  std::vector<FirstLook> looks = {{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}};
-  const Matrix6 information = lookAt(looks, first, second, motions).information;
-  if (motions.empty()) {
-    return {};
-  }
-  const Eigen::Vector3d open = leastKnown(information);
-  looks.clear();
-  if (sweep.hint) {
-    looks.push_back({log(sweep.hint->last_T_now) / sweep.periods, kNear, 1});
-  }
-  for (int step = 1; step * kNear <= kFastest * sweep.periods; ++step) {
-    for (const double sign : {1.0, -1.0}) {
-      Vector6 velocity = Vector6::Zero();
-      velocity.head<3>() = sign * step * kNear / sweep.periods * open;
-      looks.push_back({velocity, kNear, 1});
-    }
-  }
-  lookAt(looks, first, second, motions);
-  return likeliest(std::move(motions), kNear / sweep.periods);
-}
-
-/// Adds the motions that are found. \return the last one's registration
-RegistrationReport Tracker::lookAt(const std::vector<FirstLook>& looks, const Sweep& first, const Sweep& second,
-                                   std::vector<FirstMotion>& motions) const
-{
-  std::vector<RegistrationReport> found(looks.size());
-  std::vector<double> evidence(looks.size());
-  eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
-    Track track(settings_, side_);
-    found[i] = track.findMotion(first, second, looks[i].velocity, looks[i].far, looks[i].rounds).report;
-    evidence[i] = track.evidence();
-  });
-  for (std::size_t i = 0; i < looks.size(); ++i) {
-    if (found[i].hasConverged()) {
-      motions.push_back({log(found[i].target_T_source) / second.periods, evidence[i]});
-    }
-  }
-  return found.empty() ? RegistrationReport() : found.back();
-}
-
-/// The few whose evidence is best, no two of them nearer than \p same to each other.
-std::vector<Tracker::FirstMotion> Tracker::likeliest(std::vector<FirstMotion> motions, double same)
-{
-  std::stable_sort(motions.begin(), motions.end(),
-                   [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
-  constexpr std::size_t kMostLikely = 8;
-  std::vector<FirstMotion> likely;
-  for (const FirstMotion& motion : motions) {
-    const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const FirstMotion& other) {
-      return (motion.velocity - other.velocity).head<3>().norm() < same;
-    });
-    if (!is_known && likely.size() < kMostLikely) {
-      likely.push_back(motion);
-    }
-  }
-  return likely;
-}
-
-/// As many points as tell which motions are likely.
-Sweep Tracker::thinned(const Sweep& sweep)
-{
-  constexpr double kMapped = 0.6;      // sides of the map's finest cells, between points that enter it
-  constexpr double kRegistered = 3.0;  // between those that are registered
-  Sweep thin;
-  sampling_.sample(sweep.dense, kMapped * side_, thin.dense);
-  sampling_.sample(sweep.sample, kRegistered * side_, thin.sample);
-  sampling_.sample(sweep.edges, side_, thin.edges);
-  thin.periods = sweep.periods;
-  thin.fraction = sweep.fraction;
-  return thin;
 }
 
 /// Follows the motion that was found from a supposed one, unless it is known already.
@@ -316,11 +223,18 @@ void Tracker::giveUpHopeless()
 /// The best hypothesis stays, its first sweeps where its last ones say they were.
 void Tracker::settle()
 {
-  if (!hypotheses_[best_].weak.empty()) {
+  const bool is_told =
+      std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
+  const bool is_open = !hypotheses_[best_].weak.empty() && !is_told;
+  if (is_open) {
     best_ = leastMoved();
   }
   Hypothesis found = std::move(hypotheses_[best_]);
-  const std::vector<SE3> poses = posesFoundBackwards(found);
+  std::vector<SE3> forwards;
+  for (const SweepPose& pose : found.poses) {
+    forwards.push_back(pose.middle);
+  }
+  const std::vector<SE3> poses = posesFoundBackwards(kept_, forwards, settings_, side_);
   if (!poses.empty()) {
     found.track.begin(kept_, poses);
     found.poses.clear();
@@ -330,7 +244,15 @@ void Tracker::settle()
       found.poses.push_back({poses[i], kept_[i].fraction * velocity});
     }
   }
-  found.track.forgetAlong(found.weak, static_cast<double>(kept_.size()));
+  if (is_open) {
+    found.track.forgetAlong(found.weak, static_cast<double>(kept_.size()));
+  }
+  decide(std::move(found));
+}
+
+/// From here on there is one.
+void Tracker::decide(Hypothesis found)
+{
   hypotheses_.clear();
   hypotheses_.push_back(std::move(found));
   best_ = 0;
@@ -347,43 +269,6 @@ std::size_t Tracker::leastMoved() const
   const auto least = std::min_element(hypotheses_.begin(), hypotheses_.end(),
                                       [&](const Hypothesis& a, const Hypothesis& b) { return moved(a) < moved(b); });
   return static_cast<std::size_t>(least - hypotheses_.begin());
-}
-
-/// Nothing if a sweep cannot be registered.
-std::vector<SE3> Tracker::posesFoundBackwards(const Hypothesis& found) const
-{
-  constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
-  const std::size_t n = kept_.size();
-  const auto backwards = [&](std::size_t k) {
-    Sweep sweep = kept_[k];
-    sweep.periods = k + 1 < n ? kept_[k + 1].periods : 1.0;
-    sweep.fraction = -sweep.fraction;
-    sweep.hint.reset();
-    return sweep;
-  };
-  std::vector<Sweep> sweeps;
-  std::vector<SE3> poses(n);
-  std::vector<SE3> last;
-  for (std::size_t k = n; k-- > n - kTrusted;) {
-    poses[k] = found.poses[k].middle;
-    last.push_back(poses[k]);
-    sweeps.push_back(backwards(k));
-  }
-  Track back(settings_, side_);
-  back.begin(sweeps, last);
-  for (std::size_t k = n - kTrusted; k-- > 0;) {
-    const Sweep sweep = backwards(k);
-    if (!back.step(sweep).report.hasConverged()) {
-      return {};
-    }
-    back.updateMap(sweep);
-    poses[k] = back.pose().middle;
-  }
-  const SE3 first_T_world = poses[0].inverse();
-  for (SE3& pose : poses) {
-    pose = first_T_world * pose;
-  }
-  return poses;
 }
 
 }  // namespace pcl_floam

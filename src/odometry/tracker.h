@@ -20,7 +20,7 @@ public:
   void localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
                   const SE3& guess, bool keeps_map);
 
-  /// The next sweep is sought around here.
+  /// The next sweep is sought around here; of several tracks the best one stays.
   void place(const SE3& pose);
 
   struct Outcome {
@@ -55,15 +55,6 @@ private:
     std::vector<WeakDirection> weak;  // of the last sweep
     bool is_lost = false;
   };
-  struct FirstMotion {
-    Vector6 velocity;
-    double evidence = 0.0;
-  };
-  struct FirstLook {
-    Vector6 velocity;
-    double far;  ///< m, that it may be off
-    int rounds;
-  };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
     SE3 guess;
@@ -73,17 +64,12 @@ private:
   Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
   Outcome findFirstMotion(const Sweep& sweep);
-  [[nodiscard]] std::vector<FirstMotion> likelyMotions(const Sweep& sweep);
-  RegistrationReport lookAt(const std::vector<FirstLook>& looks, const Sweep& first, const Sweep& second,
-                            std::vector<FirstMotion>& motions) const;
-  [[nodiscard]] static std::vector<FirstMotion> likeliest(std::vector<FirstMotion> motions, double same);
-  [[nodiscard]] Sweep thinned(const Sweep& sweep);
   void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
   void settle();
+  void decide(Hypothesis found);
   [[nodiscard]] std::size_t leastMoved() const;
-  [[nodiscard]] std::vector<SE3> posesFoundBackwards(const Hypothesis& found) const;
 
   TrackSettings settings_;
   SpatialSampling sampling_;

@@ -1,5 +1,5 @@
 // The odometry on sweeps that a moving lidar takes of a furnished room.
-#include "support/synthetic_cloud.h"
+#include "support/moving_room.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -18,59 +18,10 @@
 namespace pcl_floam::test {
 namespace {
 
-using Cloud = pcl::PointCloud<PointXYZIRT>;
-
-/// These tests are run for each engine.
-OdometryParameters defaults()
-{
-  OdometryParameters parameters;
-#ifdef PCL_FLOAM_TEST_FEATURES
-  parameters.engine = OdometryEngine::features;
-#endif
-  return parameters;
-}
-
-/// `world_T_sensor` at a time in periods.
-using Path = std::function<SE3(double)>;
-
-SE3 steadyPath(double t)
-{
-  return exp(Vector6(t * (Vector6() << 0.6, 0.02, 0.0, 0.0, 0.0, 0.04).finished()));
-}
-
-/// From 0.2 m to 0.9 m a period, in a bend that tightens.
-SE3 acceleratedPath(double t)
-{
-  const double way = 0.2 * t + 0.02 * t * t;
-  const double heading = 0.01 * t + 0.001 * t * t;
-  return {expSO3(Eigen::Vector3d(0.0, 0.0, heading)), Eigen::Vector3d(way - 3.0, 0.15 * way, 0.0)};
-}
-
-/// Sweep k lasts from time k to time k + 1.
-Cloud sweep(const Path& path, int k)
-{
-  return toCloud(sweepRoom(Room(), Lidar(), [&](double fraction) { return path(k + fraction); }));
-}
-
 bool sameBits(const SE3& a, const SE3& b)
 {
   return a.rotation == b.rotation && a.translation == b.translation;
 }
-
-/// How far an odometry's pose after sweep k is from the true one, both seen from the first.
-double error(const SE3& estimate, const Path& path, int k, double instant = 1.0)
-{
-  const SE3 truth = path(instant).inverse() * path(k + instant);
-  return (estimate.translation - truth.translation).norm();
-}
-
-double angleError(const SE3& estimate, const Path& path, int k, double instant = 1.0)
-{
-  const SE3 truth = path(instant).inverse() * path(k + instant);
-  return rotationAngle(estimate.rotation.transpose() * truth.rotation);
-}
-
-constexpr int kScans = 18;
 
 TEST(Odometry, RecoversASteadyMotionFromItsFirstScan)
 {
@@ -266,60 +217,6 @@ TEST(Odometry, StampsTellOfAGap)
   }
 }
 
-MotionHint wheelsOf(const Path& path, int k)
-{
-  constexpr double kSigma = 1e-3;
-  return {path(k - 0.5).inverse() * path(k + 0.5), kSigma * kSigma * Matrix6(Matrix6::Identity())};
-}
-
-TEST(Odometry, AHintTakesItOverScansThatAreMissing)
-{
-  double without = 0.0;
-  for (const bool told : {false, true}) {
-    Odometry<PointXYZIRT> odometry(defaults());
-    for (int k = 0; k < kScans; ++k) {
-      const bool missing = k >= 8 && k < 12;
-      if (told && k > 0) {
-        odometry.setMotionHint(wheelsOf(acceleratedPath, k));
-      }
-      const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(acceleratedPath, k));
-      EXPECT_EQ(report.state == TrackingState::predicted, missing) << "scan " << k;
-      const double off = error(report.world_T_sensor, acceleratedPath, k);
-      without = told || k != 11 ? without : off;
-      // By features the first sweep afterwards is undistorted with the mean motion of all that time.
-      EXPECT_TRUE(!told || off < (k == 12 ? 0.07 : 0.04)) << "scan " << k << ": " << off;
-    }
-  }
-  EXPECT_GT(without, 0.1) << "else nothing was shown";
-  Odometry<PointXYZIRT> odometry(defaults());
-  EXPECT_THROW(odometry.setMotionHint({SE3(), Matrix6::Zero()}), std::invalid_argument);
-}
-
-TEST(Odometry, APoseThatIsSetKeepsTheMap)
-{
-  Odometry<PointXYZIRT> odometry(defaults());
-  for (int k = 0; k < kScans; ++k) {
-    odometry.track(sweep(steadyPath, k));
-  }
-  const std::size_t points = odometry.map().size(FeatureKind::plane);
-  // Carried away while nobody looked.
-  const auto elsewhere = [](double t) {
-    return steadyPath(4.0) * SE3(expSO3({0.0, 0.0, 1.2}), Eigen::Vector3d(0.2, 0.5, 0.1)) *
-           exp(Vector6(t * Vector6::Unit(0) * 0.2));
-  };
-  const SE3 map_T_world = steadyPath(1.0).inverse();
-  odometry.setPose(map_T_world * elsewhere(1.0) * exp((Vector6() << 0.4, -0.3, 0.1, 0.02, -0.02, 0.08).finished()));
-  for (int k = 0; k < 6; ++k) {
-    EXPECT_EQ(odometry.track(sweep(elsewhere, k)).state, TrackingState::tracked);
-    const SE3 off = (map_T_world * elsewhere(k + 1.0)).inverse() * odometry.pose();
-    EXPECT_LT(off.translation.norm(), k < 2 ? 0.15 : 0.05) << "scan " << k;
-  }
-  EXPECT_GE(odometry.map().size(FeatureKind::plane), points);
-  SE3 nowhere;
-  nowhere.translation.x() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(odometry.setPose(nowhere), std::invalid_argument);
-}
-
 TEST(Odometry, StartsWithTheFirstUsableScan)
 {
   Odometry<PointXYZIRT> odometry(defaults());
@@ -458,63 +355,6 @@ TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)
   EXPECT_EQ(report.scan_lines + report.edges, 0U);
   parameters.scan_line_source = ScanLineSource::ring_field;
   EXPECT_THROW(track(lines), std::invalid_argument) << "a source without effect";
-}
-
-TEST(Odometry, LocalizesInAMapMadeBefore)
-{
-  Odometry<PointXYZIRT> mapping(defaults());
-  for (int k = 0; k < kScans; ++k) {
-    mapping.track(sweep(steadyPath, k));
-  }
-  const SE3 map_T_world = steadyPath(1.0).inverse();  // the map's origin is the end of the first sweep
-  const auto otherPath = [](double t) {
-    return SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, 0.4, 0.1)) * acceleratedPath(t + 3.0);
-  };
-  for (const MapUse use : {MapUse::frozen, MapUse::kept_current}) {
-    Odometry<PointXYZIRT> odometry(defaults());
-    const SE3 guess = map_T_world * otherPath(1.0) * exp((Vector6() << 0.5, -0.4, 0.2, 0.02, -0.03, 0.08).finished());
-    odometry.localizeIn(mapping.map(), guess, use);
-    for (int k = 0; k < kScans; ++k) {
-      const OdometryReport& report = odometry.track(sweep(otherPath, k));
-      EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
-      EXPECT_EQ(report.keyframe && use == MapUse::frozen, false);
-      const SE3 error = (map_T_world * otherPath(k + 1.0)).inverse() * report.world_T_sensor;
-      EXPECT_LT(error.translation.norm(), k < 2 ? 0.3 : 0.05) << "scan " << k;
-    }
-    const bool same = odometry.map().size(FeatureKind::plane) == mapping.map().size(FeatureKind::plane);
-    EXPECT_EQ(same, use == MapUse::frozen);
-  }
-}
-
-#ifndef PCL_FLOAM_TEST_FEATURES
-/// In a map of a third of the room, the whole of it is mostly somewhere else.
-TEST(Odometry, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
-{
-  const auto partOf = [](const Cloud& scan, bool whole) {
-    Cloud part;
-    std::copy_if(scan.begin(), scan.end(), std::back_inserter(part.points),
-                 [whole](const PointXYZIRT& p) { return whole || p.y > 2.5F; });
-    part.resize(part.points.size());
-    return part;
-  };
-  Odometry<PointXYZIRT> mapping(defaults());
-  for (int k = 0; k < kScans; ++k) {
-    mapping.track(partOf(sweep(steadyPath, k), false));
-  }
-  for (const bool whole : {false, true}) {
-    Odometry<PointXYZIRT> odometry(defaults());
-    odometry.localizeIn(mapping.map(), SE3(), MapUse::frozen);
-    const OdometryReport& report = odometry.track(partOf(sweep(steadyPath, 0), whole));
-    EXPECT_EQ(report.state, whole ? TrackingState::doubtful : TrackingState::tracked) << report.explained;
-    EXPECT_EQ(report.reason.empty(), !whole);
-  }
-}
-#endif
-
-TEST(Odometry, AMapToLocalizeInMustHoldSomething)
-{
-  Odometry<PointXYZIRT> odometry(defaults());
-  EXPECT_THROW(odometry.localizeIn(KeyframeVoxelMap(), SE3()), std::invalid_argument);
 }
 
 TEST(Odometry, SettingsOutOfRangeAreRefused)

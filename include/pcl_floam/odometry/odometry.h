@@ -50,14 +50,18 @@ public:
   const OdometryReport& trackMissing(std::optional<double> stamp = std::nullopt);
 
   /// What wheels, an IMU or another estimator tell of the motion to the scan that comes next (or is missing next):
-  /// beside what the scans tell, and in place of it where these leave a direction open. For that scan only. \throws
-  /// std::invalid_argument as MotionHint::validate
+  /// beside what the scans tell, and in place of it where these leave a direction open. For that scan only. Along
+  /// locked degrees of freedom it should say nothing: be of large variance.
+  ///
+  /// \throws std::invalid_argument as MotionHint::validate
   void setMotionHint(const MotionHint& hint);
 
   /// The sensor is at another place of the map than was thought: the next scan is sought there. Map and parameters
   /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with. Before
-  /// the second scan it is the pose of the first. \param world_T_sensor of the next scan, within about 2 m and 10
-  /// degrees \throws std::invalid_argument for a pose that is not finite
+  /// the second scan it is the pose of the first. \ref pose and \ref report tell of it from the next scan on.
+  ///
+  /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees
+  /// \throws std::invalid_argument for a pose that is not finite
   void setPose(const SE3& world_T_sensor);
 
   /// The last report.

@@ -7,8 +7,8 @@
 namespace pcl_floam {
 
 enum class OdometryEngine : std::uint8_t {
-  /// The paper's own pipeline, and the quicker one: its features, with the nearest points of the map. Needs scan lines,
-  /// and a start at rest or nearly so. On open roads the sensor's own rings on the ground look like rest to it.
+  /// The paper's own pipeline, and the quicker one: its features, with the nearest points of the map. Needs scan lines.
+  /// On open roads and motorways the sensor's own rings on the ground look like rest to it.
   features,
   /// Points taken by space and the paper's edges, with surfaces of a pyramid of voxels that remembers which lasers saw
   /// them. Holds on open roads, and for lidars without scan lines. Of the registration's parameters it uses `locked`

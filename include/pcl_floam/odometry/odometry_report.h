@@ -30,7 +30,6 @@ enum class TrackingState : std::uint8_t {
 struct StageTimes {
   double scan_lines = 0.0;  ///< scan lines and times
   double features = 0.0;
-  double compensation = 0.0;  ///< both stages
   double registration = 0.0;
   double map = 0.0;
   double total = 0.0;
@@ -54,9 +53,9 @@ struct OdometryReport {
   /// Less than half is `doubtful`.
   double explained = 0.0;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
-  /// registration may be off against the map; and along directions that the scans said nothing of (weak ones; all of
-  /// them while poses are predicted) what the velocity may have been off since they were seen last. What a map
-  /// without an earlier one took in by then stays. Zero for the first scan.
+  /// registration may be off against the map; along directions that the scans said nothing of (weak ones, by surfaces;
+  /// all of them while poses are predicted) what the velocity may have been off since they were seen last. By features
+  /// weak ones have a variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by
   /// What the scan was worked from: scan lines or space; `automatic` if it was missing.

@@ -53,9 +53,7 @@ struct RegistrationReport {
   /// rotation about the sensor's position and the target's axes.
   Matrix6 information = Matrix6::Zero();
   /// Covariance of the pose in the same parametrisation: the information's inverse times the variance of an independent
-  /// residual, which several neighbouring ones make up. With the motion estimated during the sweep, as in the odometry,
-  /// the errors of single registrations in maps of exact poses are within it: their normalised square, 6 on average if
-  /// it were exact, is 1.6 to 6 in six simulated worlds. The map's own drift comes on top. Weak directions have a
+  /// residual, which several neighbouring ones make up. The map's own drift comes on top. Weak directions have a
   /// variance too large to be used, not infinity, or that of the motion prior.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<WeakDirection> weak_directions;

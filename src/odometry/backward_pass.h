@@ -1,0 +1,19 @@
+/// \file backward_pass.h
+/// Where the first sweeps were, as the later ones tell.
+#pragma once
+
+#include "odometry/track.h"
+
+#include <vector>
+
+namespace pcl_floam {
+
+/// The first poses of a track are those of a young map; the last ones are better, and time may be followed backwards
+/// from them.
+/// \param forwards poses of the sweeps as they were found
+/// \param side     m, of the finest cells of the track's map
+/// \return poses seen from the first one; nothing if a sweep cannot be registered
+[[nodiscard]] std::vector<SE3> posesFoundBackwards(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
+                                                   const TrackSettings& settings, double side);
+
+}  // namespace pcl_floam

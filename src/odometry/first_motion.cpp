@@ -1,0 +1,144 @@
+#include "odometry/first_motion.h"
+
+#include "common/side_by_side.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <algorithm>
+
+namespace pcl_floam {
+
+namespace {
+
+constexpr double kNear = 0.5;  // m: as far as a registration finds a motion from a guess
+
+struct FirstMotion {
+  Vector6 velocity;
+  double evidence = 0.0;
+};
+
+/// A guess to begin with.
+struct FirstLook {
+  Vector6 velocity;
+  double far;  ///< m, that it may be off
+  int rounds;
+};
+
+/// The direction along which the position is known least.
+Eigen::Vector3d leastKnown(const Matrix6& information)
+{
+  const Eigen::Matrix<double, 6, 6> h = information;
+  const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
+                                                                    h.bottomRightCorner<3, 3>().inverse() *
+                                                                    h.bottomLeftCorner<3, 3>();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(translation).eigenvectors().col(0);
+}
+
+/// As many points as tell which motions are likely.
+Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
+{
+  constexpr double kMapped = 0.6;      // sides of the map's finest cells, between points that enter it
+  constexpr double kRegistered = 3.0;  // between those that are registered
+  Sweep thin;
+  sampling.sample(sweep.dense, kMapped * side, thin.dense);
+  sampling.sample(sweep.sample, kRegistered * side, thin.sample);
+  sampling.sample(sweep.edges, side, thin.edges);
+  thin.periods = sweep.periods;
+  thin.fraction = sweep.fraction;
+  thin.hint = sweep.hint;
+  return thin;
+}
+
+/// Two sweeps, looked at from any guess.
+class TwoSweeps {
+public:
+  TwoSweeps(const Sweep& first, const Sweep& second, const TrackSettings& settings, double side)
+      : settings_(settings),
+        side_(side),
+        first_(thinned(first, side, sampling_)),
+        second_(thinned(second, side, sampling_))
+  {
+  }
+
+  /// Adds the motions that are found. \return the last one's registration
+  RegistrationReport lookAt(const std::vector<FirstLook>& looks, std::vector<FirstMotion>& motions) const
+  {
+    std::vector<RegistrationReport> found(looks.size());
+    std::vector<double> evidence(looks.size());
+    eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
+      Track track(settings_, side_);
+      found[i] = track.findMotion(first_, second_, looks[i].velocity, looks[i].far, looks[i].rounds).report;
+      evidence[i] = track.evidence();
+    });
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      if (found[i].hasConverged()) {
+        motions.push_back({log(found[i].target_T_source) / second_.periods, evidence[i]});
+      }
+    }
+    return found.empty() ? RegistrationReport() : found.back();
+  }
+
+private:
+  const TrackSettings& settings_;
+  double side_;
+  SpatialSampling sampling_;
+  Sweep first_;
+  Sweep second_;
+};
+
+/// Along the open direction both ways, and as it is told.
+std::vector<FirstLook> looksAlong(const Eigen::Vector3d& open, const Sweep& second)
+{
+  constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
+  std::vector<FirstLook> looks;
+  if (second.hint) {
+    looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
+  }
+  for (int step = 1; step * kNear <= kFastest * second.periods; ++step) {
+    for (const double sign : {1.0, -1.0}) {
+      Vector6 velocity = Vector6::Zero();
+      velocity.head<3>() = sign * step * kNear / second.periods * open;
+      looks.push_back({velocity, kNear, 1});
+    }
+  }
+  return looks;
+}
+
+/// The few whose evidence is best, no two of them nearer than \p same to each other.
+std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
+{
+  std::stable_sort(motions.begin(), motions.end(),
+                   [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
+  constexpr std::size_t kMostLikely = 8;
+  std::vector<Vector6> likely;
+  for (const FirstMotion& motion : motions) {
+    const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const Vector6& other) {
+      return (motion.velocity - other).head<3>().norm() < same;
+    });
+    if (!is_known && likely.size() < kMostLikely) {
+      likely.push_back(motion.velocity);
+    }
+  }
+  return likely;
+}
+
+}  // namespace
+
+std::vector<Vector6> likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings,
+                                        double side)
+{
+  constexpr double kFar = 2.0;  // m
+  constexpr int kFarRounds = 5;
+  const TwoSweeps sweeps(first, second, settings, side);
+  std::vector<FirstMotion> motions;
+  const Matrix6 information =
+      sweeps.lookAt({{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}}, motions).information;
+  if (motions.empty()) {
+    return {};
+  }
+  sweeps.lookAt(looksAlong(leastKnown(information), second), motions);
+  return likeliest(std::move(motions), kNear / second.periods);
+}
+
+}  // namespace pcl_floam
