@@ -7,8 +7,6 @@
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/filters/sensor_model.h>
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <vector>
 
@@ -23,13 +21,5 @@ namespace pcl_floam {
 
 /// Every measurable point as a plane feature, for clouds without scan lines.
 [[nodiscard]] FeatureSet pointFeatures(const CloudView& cloud, const std::vector<std::uint8_t>& selectable = {});
-
-/// The measurable points of a cloud, in double.
-[[nodiscard]] std::vector<Eigen::Vector3d> measurablePoints(const CloudView& cloud);
-
-class NeighborSearch;
-
-/// Median distance of a sample of the points to their nearest other point; 0 if there is none.
-[[nodiscard]] double pointSpacing(const std::vector<Eigen::Vector3d>& points, const NeighborSearch& search);
 
 }  // namespace pcl_floam

@@ -58,7 +58,6 @@ public:
 
   [[nodiscard]] std::string_view take(std::uint64_t count) { return reader_.take(count); }
   void skip(std::uint64_t count) { reader_.skip(count); }
-  [[nodiscard]] bool numbersAreSwapped() const { return swap_; }
 
   [[noreturn]] void fail(const std::string& reason) const { reader_.fail(reason); }
   /// For what all messages of the topic share. \throws UnreadableKind
