@@ -30,9 +30,12 @@ if(PCL_FLOAM_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPE
   message(STATUS "pcl_floam: no CMAKE_BUILD_TYPE given; -DCMAKE_BUILD_TYPE=Release makes it about ten times faster")
 endif()
 
-# Warnings and sanitizers of this project's own targets; linked PRIVATE, never installed.
+# Flags of this project's own targets; linked PRIVATE, never installed.
 add_library(pcl_floam_build_flags INTERFACE)
 target_compile_options(pcl_floam_build_flags INTERFACE
+  # Multiplications fused into additions, as by GCC on arm64, would round what is worked out in two places differently:
+  # a squared distance, and the limit that it is compared with.
+  $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-ffp-contract=off>
   $<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wcast-qual>
   # GCC 12 takes Eigen's partial vector loads, inlined from PCL's headers, for overruns.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>

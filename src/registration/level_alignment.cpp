@@ -55,7 +55,7 @@ void LevelAlignment::searchNearest(std::size_t i, const Eigen::Vector3f& query, 
   float limit = bound;
   float known = std::numeric_limits<float>::max();
   if (last.nearest >= 0) {
-    known = (target_.tree.points()[static_cast<std::size_t>(last.nearest)] - query).squaredNorm();
+    known = squaredDistance(target_.tree.points()[static_cast<std::size_t>(last.nearest)], query);
     // The point that was nearest bounds the search: nothing farther can be nearest now.
     limit = std::min(limit, known * kRounding);
   }

@@ -168,10 +168,7 @@ void PointTree::lookAt(const Node& leaf, const Eigen::Vector3f& query, Collector
     const float* z = coordinates_[2].data() + first;
     std::array<float, kLeafSize> squared;
     for (std::size_t i = 0; i < kLeafSize; ++i) {  // a whole block, for the sake of vector instructions
-      const float dx = x[i] - query.x();
-      const float dy = y[i] - query.y();
-      const float dz = z[i] - query.z();
-      squared[i] = dx * dx + (dy * dy + dz * dz);  // summed as Eigen does
+      squared[i] = squaredDistance(x[i] - query.x(), y[i] - query.y(), z[i] - query.z());
     }
     const int count = std::min(kLeafSize, leaf.last_point - first);
     for (int i = 0; i < count; ++i) {

@@ -13,6 +13,16 @@
 
 namespace pcl_floam {
 
+/// In this order wherever distances are compared to the bit: Eigen's order depends on the processor.
+inline float squaredDistance(float dx, float dy, float dz)
+{
+  return dx * dx + (dy * dy + dz * dz);
+}
+inline float squaredDistance(const Eigen::Vector3f& a, const Eigen::Vector3f& b)
+{
+  return squaredDistance(a.x() - b.x(), a.y() - b.y(), a.z() - b.z());
+}
+
 /// The nearest points of one query, in no order but that the farthest comes last. Fixed room: no allocation.
 class NearestPoints {
 public:

@@ -28,7 +28,7 @@ std::vector<float> sortedDistances(const std::vector<Eigen::Vector3f>& points, c
 {
   std::vector<float> distances;
   for (const Eigen::Vector3f& point : points) {
-    distances.push_back((point - query).squaredNorm());
+    distances.push_back(squaredDistance(point, query));
   }
   std::sort(distances.begin(), distances.end());
   return distances;
@@ -67,7 +67,7 @@ TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
       const int found = tree.nearest(query, squared);
       ASSERT_GE(found, 0);
       EXPECT_EQ(squared, expected[0]);
-      EXPECT_EQ((tree.points()[static_cast<std::size_t>(found)] - query).squaredNorm(), expected[0]);
+      EXPECT_FLOAT_EQ((tree.points()[static_cast<std::size_t>(found)] - query).squaredNorm(), expected[0]);
       NearestPoints nearest;
       tree.nearest(query, 14, nearest);
       ASSERT_EQ(nearest.count(), 14);

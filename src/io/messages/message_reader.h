@@ -5,6 +5,7 @@
 #include "io/byte_reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -32,11 +33,10 @@ public:
   [[nodiscard]] Number number()
   {
     align(sizeof(Number));
-    std::string_view bytes = reader_.take(sizeof(Number));
-    char swapped[sizeof(Number)];
+    std::array<char, sizeof(Number)> bytes;
+    std::memcpy(bytes.data(), reader_.take(sizeof(Number)).data(), sizeof(Number));
     if (swap_) {
-      std::reverse_copy(bytes.begin(), bytes.end(), swapped);
-      bytes = {swapped, sizeof(Number)};
+      std::reverse(bytes.begin(), bytes.end());
     }
     Number value;
     std::memcpy(&value, bytes.data(), sizeof(Number));
