@@ -19,12 +19,13 @@ void sideBySide(int threads, const First& first, const Second& second)
   }
 }
 
-/// `work(i)` for all i below \p count, in any order. If there are more threads than that, one after the other, each with
-/// all threads: those that are started within others cost milliseconds.
+/// `work(i)` for all i below \p count, in any order. If there are more threads than that, one after the other, each
+/// with all threads: those that are started within others cost milliseconds.
 template <typename Work>
 void eachSideBySide(int threads, std::size_t count, const Work& work)
 {
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1 && count >= static_cast<std::size_t>(threads))
+  const bool at_once = threads > 1 && count >= static_cast<std::size_t>(threads);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (at_once)
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
     work(static_cast<std::size_t>(i));
   }
