@@ -24,8 +24,13 @@ void sideBySide(int threads, const First& first, const Second& second)
 template <typename Work>
 void eachSideBySide(int threads, std::size_t count, const Work& work)
 {
-  const bool at_once = threads > 1 && count >= static_cast<std::size_t>(threads);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (at_once)
+  if (count < static_cast<std::size_t>(threads) || threads == 1) {
+    for (std::size_t i = 0; i < count; ++i) {
+      work(i);
+    }
+    return;
+  }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
   for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
     work(static_cast<std::size_t>(i));
   }
