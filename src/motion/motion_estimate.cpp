@@ -84,7 +84,7 @@ void MotionEstimate::forgetAlong(const Eigen::Vector3d& direction, double period
   covariance_.block<3, 3>(6, 6) += variance;
 }
 
-void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hint)
+void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hint, double periods_error)
 {
   constexpr double kMostSteps = 16.0;
   const double steps = std::clamp(std::ceil(periods), 1.0, kMostSteps);  // noise turns with the sensor on the way
@@ -94,8 +94,10 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
     advance(periods / steps, growth);
   }
   const Square12 was = covariance_;
+  const Block6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
+  growth.noise.topLeftCorner<6, 6>() += periods_error * periods_error * squared_motion;
   covariance_ = growth.of(was);
-  periods_ = periods;
+  periods_ = periods_error > 0.0 ? 0.0 : periods;
   expected_rotation_ = pose_.rotation;
   if (hint) {
     take(*hint, before, was, growth);
@@ -157,7 +159,7 @@ void MotionEstimate::learnFrom(const SE3& world_T_sensor)
 {
   if (periods_ > 0.0) {
     const double error = logSO3(expected_rotation_.transpose() * world_T_sensor.rotation).squaredNorm() / 3.0;
-    turn_error_ += (kTimesLate * error / (periods_ * periods_) - turn_error_) / kMemory;
+    turn_error_ += (kTimesLate * error / std::max(1.0, periods_ * periods_) - turn_error_) / kMemory;
     turn_error_ = std::max(turn_error_, kLeastRotation * kLeastRotation);
   }
   periods_ = 0.0;

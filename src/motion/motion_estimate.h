@@ -9,6 +9,9 @@
 
 namespace pcl_floam {
 
+/// Sweeps until the velocity is known again where the sensor has been sought.
+constexpr int kSweepsUntilKnown = 3;
+
 /// Pose and velocity under white noise of acceleration (Barfoot 2017, ch. 11): a constant velocity (Eq. 2), and how far
 /// that may be off. Errors are perturbations on the right, in the sensor's axes: T exp(d), v + n. Times are in periods
 /// of the sensor.
@@ -37,8 +40,9 @@ public:
   void forgetAlong(const Eigen::Vector3d& direction, double periods);
 
   /// Goes on by so many periods.
-  /// \param hint of the motion meanwhile
-  void predict(double periods, const std::optional<MotionHint>& hint = std::nullopt);
+  /// \param hint          of the motion meanwhile
+  /// \param periods_error one standard deviation
+  void predict(double periods, const std::optional<MotionHint>& hint = std::nullopt, double periods_error = 0.0);
 
   /// Takes in a measured pose.
   /// \param covariance of its errors, as \ref poseCovariance
@@ -68,7 +72,7 @@ private:
   SE3 pose_;
   Vector6 velocity_ = Vector6::Zero();
   Matrix12 covariance_ = Matrix12::Zero();
-  double periods_ = 0.0;                                             ///< of the last prediction
+  double periods_ = 0.0;  ///< of the last prediction; 0: it tells nothing of how restless the sensor is
   Eigen::Matrix3d expected_rotation_ = Eigen::Matrix3d::Identity();  ///< then, by the velocity alone
   double turn_error_;  ///< rad^2 per coordinate, squared error of a prediction over one period: the mean of late
 };

@@ -2,13 +2,15 @@
 
 #include "common/median.h"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kRememberedPeriods = 9;
+constexpr std::size_t kRememberedPeriods = 31;  // a few seconds: longer than a disturbance
 constexpr double kClockWasSet = 100.0;  // periods
 constexpr double kNoTime = 0.01;        // periods; a velocity over less would be the noise of the pose
 
@@ -23,11 +25,19 @@ double ScanClock::period() const
   return medianOf(recent);
 }
 
+double ScanClock::error() const
+{
+  return std::sqrt(static_cast<double>(stands_) + static_cast<double>(stood_));
+}
+
 double ScanClock::tick(std::optional<double> stamp)
 {
+  stood_ = std::exchange(stands_, false);
   if (!stamp || !std::isfinite(*stamp)) {
+    unstamped_ += 1.0;
     return 1.0;
   }
+  const double counted = std::exchange(unstamped_, 0.0);
   if (!last_stamp_) {
     last_stamp_ = stamp;
     return 1.0;
@@ -37,12 +47,13 @@ double ScanClock::tick(std::optional<double> stamp)
   last_stamp_ = stamp;
   const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
   if (elapsed > 0.0 && std::isfinite(elapsed)) {
-    remember(elapsed);  // in any case: the period may have been taken from stamps that were wrong
+    remember(elapsed / (1.0 + counted));  // in any case: the period may have been taken from stamps that were wrong
   }
-  if (!clock_was_set && elapsed <= kNoTime * usual) {
+  stands_ = !clock_was_set && elapsed <= kNoTime * usual;
+  if (stands_) {
     return 0.0;
   }
-  return clock_was_set ? 1.0 : elapsed / period();
+  return clock_was_set ? 1.0 : std::max(0.0, elapsed / period() - counted);
 }
 
 void ScanClock::remember(double elapsed)

@@ -13,9 +13,12 @@ public:
   /// \param period s; 0 to take it from the stamps
   explicit ScanClock(double period = 0.0) : given_period_(period) {}
 
-  /// Periods since the last scan: 1 without stamps, 0 for a stamp that does not advance. A hundred and more, forwards
-  /// or back, mean that the clock was set: that is 1, too.
+  /// Periods since the last scan: 1 without a stamp, which the next stamp does not count again; 0 for a stamp that does
+  /// not advance. A hundred and more, forwards or back, mean that the clock was set: that is 1, too.
   double tick(std::optional<double> stamp);
+
+  /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at all.
+  [[nodiscard]] double error() const;
 
   /// Seconds from sweep to sweep; 0 while unknown.
   [[nodiscard]] double period() const;
@@ -25,7 +28,10 @@ private:
 
   double given_period_;
   std::optional<double> last_stamp_;
-  std::vector<double> recent_;  ///< the last differences of stamps
+  bool stands_ = false;         ///< the last stamp did not advance ...
+  bool stood_ = false;          ///< ... or the one before
+  double unstamped_ = 0.0;      ///< periods counted since the last stamp
+  std::vector<double> recent_;  ///< the last differences of stamps, s a period
 };
 
 }  // namespace pcl_floam

@@ -10,6 +10,7 @@ namespace pcl_floam {
 
 /// The first poses of a track are those of a young map; the last ones are better, and time may be followed backwards
 /// from them.
+/// \param kept     four sweeps or more: the last four are where they were found
 /// \param forwards poses of the sweeps as they were found
 /// \param side     m, of the finest cells of the track's map
 /// \return poses seen from the first one; nothing if a sweep cannot be registered

@@ -3,14 +3,9 @@
 #pragma once
 
 #include "motion/motion_estimate.h"
-#include "motion/pending_hint.h"
-#include "motion/scan_clock.h"
 #include "motion/sweep_pose.h"
-#include "odometry/map_building.h"
-#include "odometry/scan_preparation.h"
-#include "odometry/stopwatch.h"
+#include "odometry/odometry_run.h"
 
-#include <pcl_floam/odometry/odometry.h>
 #include <pcl_floam/registration/feature_registration.h>
 
 #include <algorithm>
@@ -22,31 +17,21 @@ namespace pcl_floam {
 
 /// Within the pipeline, poses are those of mid-sweep: there an error of the assumed motion moves the sweep's two halves
 /// apart but not its pose, which at the end (the paper's instant) the next motion would take up with the opposite sign.
-struct FeatureOdometry {
+struct FeatureOdometry : OdometryRun {
   static constexpr double kErrors = 3.0;    ///< standard deviations that the prediction may be off ...
   static constexpr double kFarthest = 3.0;  ///< ... and m
   /// Periods: what moves in less cannot be told from the poses' errors.
   static constexpr double kShortest = 0.5;
 
-  explicit FeatureOdometry(const OdometryParameters& p) : parameters(p), map_building(p), clock(p.scan_period) {}
+  using OdometryRun::OdometryRun;
 
-  OdometryParameters parameters;
-  MapBuilding map_building;
-  ScanClock clock;
-  SE3 initial_pose;       ///< of the first scan, at the instant of the parameters
   MotionEstimate motion;  ///< at the last scan that was registered
   SweepPose pose;         ///< of that scan
   bool started = false;
   bool is_placed = true;            ///< else the pose is a guess, in a map that was made before
   std::optional<FeatureSet> first;  ///< the first scan, until its motion is known with the second
   int scans_to_wait = 0;            ///< until the map takes in scans again
-  double sweep_fraction = 0.0;      ///< of the last scan that was registered
   int failed_starts = 0;
-  double periods = 0.0;  ///< since that scan
-  PendingHint hint;
-  PreparedScan scan;
-  OdometryReport report;
-  Stopwatch watch;
 
   void track(const CloudView& cloud, std::optional<double> stamp)
   {
@@ -98,7 +83,7 @@ struct FeatureOdometry {
   {
     motion = MotionEstimate(world_T_sensor);
     pose = {world_T_sensor};
-    periods = 0.0;
+    periods = periods_error = 0.0;
     is_placed = false;
   }
 
@@ -109,15 +94,6 @@ struct FeatureOdometry {
     if (first) {
       beginMap(Vector6::Zero());
     }
-  }
-
-  void beginScan(std::size_t points, std::optional<double> stamp)
-  {
-    report = OdometryReport();
-    report.points = points;
-    watch.start();
-    hint.elapse();
-    periods += clock.tick(stamp);
   }
 
   // Sensor Model and Feature Extraction
@@ -141,8 +117,7 @@ struct FeatureOdometry {
   {
     started = true;
     failed_starts = 0;
-    periods = 0.0;
-    hint.reach();
+    reachScan();
     first = scan.features;
     motion = MotionEstimate(initial_pose);
     pose = {initial_pose};
@@ -170,7 +145,7 @@ struct FeatureOdometry {
   [[nodiscard]] MotionEstimate predictMotion(double over) const
   {
     MotionEstimate predicted = motion;
-    predicted.predict(over, hint.sinceLast());
+    predicted.predict(over, hint.sinceLast(), periods_error);
     return predicted;
   }
 
@@ -249,17 +224,15 @@ struct FeatureOdometry {
     if (is_placed) {
       motion.correct(report.registration.target_T_source, report.registration.covariance);
     } else {
-      constexpr int kUntilKnown = 3;
       motion = MotionEstimate(report.registration.target_T_source);
       is_placed = true;
-      scans_to_wait = kUntilKnown;
+      scans_to_wait = kSweepsUntilKnown;
     }
     pose = {report.registration.target_T_source, report.registration.sweep_twist};
     if (parameters.compensation == CompensationMode::two_stage && periods >= kShortest) {
       pose.twist = scan.sweep_fraction / periods * log(last.inverse() * pose.middle);
     }
-    periods = 0.0;
-    hint.reach();
+    reachScan();
   }
 
   /// Where the pose was given, once the velocity is known.
@@ -286,8 +259,7 @@ struct FeatureOdometry {
     report.world_T_sensor = started ? pose.at(instant) : initial_pose;
     report.covariance = report.registration.covariance;
     if (state == TrackingState::predicted) {
-      constexpr double kLongest = 10.0;  // periods: a velocity is not known for ever
-      const MotionEstimate predicted = predictMotion(std::min(periods, kLongest));
+      const MotionEstimate predicted = predictMotion(periodsKnown());
       report.world_T_sensor = SweepPose{predicted.pose(), sweep_fraction * predicted.velocity()}.at(instant);
       report.covariance = predicted.poseCovariance();
     }

@@ -3,15 +3,9 @@
 #pragma once
 
 #include "common/side_by_side.h"
-#include "motion/pending_hint.h"
-#include "motion/scan_clock.h"
 #include "odometry/first_poses.h"
-#include "odometry/map_building.h"
-#include "odometry/scan_preparation.h"
-#include "odometry/stopwatch.h"
+#include "odometry/odometry_run.h"
 #include "odometry/tracker.h"
-
-#include <pcl_floam/odometry/odometry.h>
 
 #include <algorithm>
 #include <optional>
@@ -22,30 +16,17 @@ namespace pcl_floam {
 
 /// Within the pipeline, poses are those of mid-sweep, seen from the first one. World poses of other instants are
 /// derived when they are given out.
-struct SurfaceOdometry {
+struct SurfaceOdometry : OdometryRun {
   explicit SurfaceOdometry(const OdometryParameters& p)
-      : parameters(p),
-        map_building(p),
-        clock(p.scan_period),
-        tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads})
+      : OdometryRun(p), tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads})
   {
   }
 
-  OdometryParameters parameters;
-  MapBuilding map_building;
-  ScanClock clock;
   Tracker tracker;
-  SE3 initial_pose;   ///< of the first scan, at the instant of the parameters
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
-  PreparedScan scan;
   Sweep sweep;
-  PendingHint hint;
-  double sweep_fraction = 0.0;          ///< of the last scan that told of it
-  double periods = 0.0;                 ///< since the last scan that was registered
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
   std::vector<FeatureSet> first_scans;  ///< their features, as measured
-  OdometryReport report;
-  Stopwatch watch;
 
   void track(const CloudView& cloud, std::optional<double> stamp)
   {
@@ -71,11 +52,7 @@ struct SurfaceOdometry {
 
   void beginScan(std::size_t points, std::optional<double> stamp)
   {
-    report = OdometryReport();
-    report.points = points;
-    watch.start();
-    hint.elapse();
-    periods += clock.tick(stamp);
+    OdometryRun::beginScan(points, stamp);
     first_poses.elapse(periods);
   }
 
@@ -107,8 +84,7 @@ struct SurfaceOdometry {
   /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
   TrackingState judge()
   {
-    constexpr double kLeast = 0.5;
-    if (report.explained >= kLeast || tracker.isOpen()) {
+    if (report.explained >= kBorneOut || tracker.isOpen()) {
       return TrackingState::tracked;
     }
     report.reason = "the map has no surface for most of the scan: the pose may be wrong";
@@ -129,8 +105,7 @@ struct SurfaceOdometry {
     }
     sweep.periods = 1.0;
     registerSweep();
-    periods = 0.0;
-    hint.reach();
+    reachScan();
     first_poses.begin();
     first_scans = {scan.features};
     map_building.clear();
@@ -147,15 +122,12 @@ struct SurfaceOdometry {
     sweep.periods = std::max(periods, kShortest);
     const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
-    report.explained = outcome.registration.points > 0 ? static_cast<double>(report.registration.plane_inliers) /
-                                                             static_cast<double>(outcome.registration.points)
-                                                       : 0.0;
+    report.explained = outcome.registration.explained();
     report.milliseconds.registration += watch.lap();
     if (!report.registration.hasConverged()) {
       return;
     }
-    periods = 0.0;
-    hint.reach();
+    reachScan();
     if (was_open && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
       first_poses.add();
@@ -168,6 +140,7 @@ struct SurfaceOdometry {
   Tracker::Outcome registerSweep()
   {
     sweep.fraction = scan.sweep_fraction;
+    sweep.periods_error = periods_error;
     sweep.hint = hint.sinceLast();
     return tracker.step(sweep);
   }
@@ -246,12 +219,10 @@ struct SurfaceOdometry {
     return {motion.pose(), sweep_fraction * motion.velocity()};
   }
 
-  /// A velocity is not known for ever.
   [[nodiscard]] MotionEstimate predicted() const
   {
-    constexpr double kLongest = 10.0;  // periods
     MotionEstimate motion = tracker.track().motion();
-    motion.predict(std::min(periods, kLongest), hint.sinceLast());
+    motion.predict(periodsKnown(), hint.sinceLast(), periods_error);
     return motion;
   }
 
@@ -267,7 +238,7 @@ struct SurfaceOdometry {
     tracker.place(world_T_track.inverse() * world_T_sensor);
     first_poses.close();
     first_scans.clear();
-    periods = 0.0;
+    periods = periods_error = 0.0;
   }
 
   void moveFirstScan()

@@ -15,7 +15,8 @@ struct Sweep {
   std::vector<ScanPoint> dense;   ///< what enters the map: no closer together than its cells tell apart
   std::vector<ScanPoint> sample;  ///< what is registered: one of each of the map's finest cells
   std::vector<ScanPoint> edges;   ///< the paper's edge features
-  double periods = 1.0;           ///< since the sweep before, > 0
+  double periods = 1.0;           ///< since the sweep before, > 0 ...
+  double periods_error = 0.0;     ///< ... and how far off that may be, one standard deviation
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
   std::optional<MotionHint> hint;  ///< of the motion since the sweep before

@@ -19,8 +19,8 @@ constexpr double kLook = 3.0;
 /// How far off a pose may be that somebody gives, m and rad.
 constexpr double kGivenOff = 3.0;
 constexpr double kGivenTurned = 0.25;
-/// Sweeps until the velocity is known again where the sensor has been sought.
-constexpr int kUntilKnown = 3;
+/// Part of a sweep that points anywhere would have on surfaces of the map.
+constexpr double kByChance = 0.1;
 
 Matrix6 covarianceOf(double translation, double rotation)
 {
@@ -147,9 +147,7 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
   const MotionEstimate before = motion_;
   is_keyframe_ = false;
   predict(sweep);
-  SurfaceProblem problem = problemFor(sweep);
-  problem.wants_evidence = is_judged;
-  SurfaceRegistration registration = registerSurfaces(problem);
+  SurfaceRegistration registration = registerPredicted(sweep, is_judged);
   if (registration.report.hasConverged()) {
     if (is_judged) {
       judge(registration);
@@ -161,45 +159,72 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
   return registration;
 }
 
+/// A pose that the map does not bear out may be due to a prediction that was farther off than could be known.
+SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
+{
+  SurfaceProblem problem = problemFor(sweep);
+  problem.wants_evidence = is_judged;
+  SurfaceRegistration found = registerSurfaces(problem);
+  if (!is_judged && found.explained() < kBorneOut && seek(sweep)) {
+    found = registerSurfaces(problemFor(sweep));
+  }
+  if (found.report.hasConverged() && found.explained() < kByChance) {
+    found.report.termination = Termination::too_few_correspondences;
+  }
+  return found;
+}
+
 /// Motion Estimation (Eq. 2).
 void Track::predict(const Sweep& sweep)
 {
-  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   velocity_before_ = motion_.velocity();
   periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
-  motion_.predict(sweep.periods, sweep.hint);
+  motion_.predict(sweep.periods, sweep.hint, sweep.periods_error);
   if (is_placed_) {
     settle(sweep, pose_.middle, kGivenOff, kGivenTurned);
-  } else if (sweep.periods > kLong) {
-    seekAllAround(sweep);
   }
 }
 
-/// After a time without scans: where the sensor was, and where it would be by now, turned by any angle about its axis.
-void Track::seekAllAround(const Sweep& sweep)
+/// Goes to where the sweep is explained best, if that is better than from the prediction. After a time without scans it
+/// may be anywhere around where it was, and where it would be by now, turned by any angle about its axis.
+/// \return whether it is elsewhere
+bool Track::seek(const Sweep& sweep)
 {
+  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   constexpr int kTurns = 18;
   constexpr double kReach = 1.0;   // m
   constexpr double kTurned = 0.4;  // rad
-  SurfaceProblem as_predicted = problemFor(sweep);
-  as_predicted.wants_evidence = true;
-  SurfaceRegistration best = registerSurfaces(as_predicted);
-  bool is_elsewhere = !best.report.hasConverged();
+  if (sweep.periods <= kLong) {
+    return goToBest(sweep, {motion_.pose()}, kGivenOff, kGivenTurned);
+  }
+  std::vector<SE3> guesses;
   for (int turn = 0; turn < kTurns; ++turn) {
     const Eigen::AngleAxisd about_axis(2.0 * M_PI * turn / kTurns, Eigen::Vector3d::UnitZ());
     for (const SE3& place : {pose_.middle, motion_.pose()}) {
-      const SE3 guess(place.rotation * about_axis.toRotationMatrix(), place.translation);
-      const SurfaceRegistration found = registerFrom(sweep, guess, kReach, kTurned);
-      if (found.report.hasConverged() && (!best.report.hasConverged() || found.evidence > best.evidence)) {
-        best = found;
-        is_elsewhere = true;
-      }
+      guesses.emplace_back(place.rotation * about_axis.toRotationMatrix(), place.translation);
     }
   }
-  if (is_elsewhere && best.report.hasConverged()) {
-    sweeps_to_wait_ = kUntilKnown;
-    settle(sweep, best.report.target_T_source, kReach, kTurned);
+  return goToBest(sweep, guesses, kReach, kTurned);
+}
+
+bool Track::goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn)
+{
+  SurfaceProblem as_predicted = problemFor(sweep);
+  as_predicted.wants_evidence = true;
+  SurfaceRegistration best = registerSurfaces(as_predicted);
+  bool is_elsewhere = false;
+  for (const SE3& guess : guesses) {
+    const SurfaceRegistration found = registerFrom(sweep, guess, far, far_turn);
+    if (found.report.hasConverged() && (!best.report.hasConverged() || found.evidence > best.evidence)) {
+      best = found;
+      is_elsewhere = true;
+    }
   }
+  if (is_elsewhere) {
+    sweeps_to_wait_ = kSweepsUntilKnown;
+    settle(sweep, best.report.target_T_source, far, far_turn);
+  }
+  return is_elsewhere;
 }
 
 /// Places the sensor where a sweep fits, from a guess that is far off, looking less and less far. What was known of the
@@ -280,7 +305,7 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   if (settings_.compensation == CompensationMode::two_stage) {
     pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
   }
-  sweeps_to_wait_ = is_placed_ ? kUntilKnown : sweeps_to_wait_;
+  sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
   is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isKeyframe();
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);

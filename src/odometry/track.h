@@ -64,7 +64,9 @@ public:
 
 private:
   void predict(const Sweep& sweep);
-  void seekAllAround(const Sweep& sweep);
+  SurfaceRegistration registerPredicted(const Sweep& sweep, bool is_judged);
+  bool seek(const Sweep& sweep);
+  bool goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn);
   void settle(const Sweep& sweep, const SE3& guess, double far, double far_turn);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
   SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;

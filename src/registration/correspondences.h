@@ -18,8 +18,7 @@ namespace pcl_floam {
 /// A source point and the factor that holds it.
 ///
 /// The factor is kept while the point moves by less than a fiftieth of the search radius: the neighbours there tell
-/// of the same surface. Without it the registration of an HDL-64 scan searches about twice as often, for the same
-/// trajectory.
+/// of the same surface, and searching is what takes the time.
 template <typename Factor>
 struct Correspondence {
   Eigen::Vector3d point;  ///< now, in the target's axes, relative to the local origin

@@ -15,8 +15,7 @@ namespace pcl_floam {
 /// eigenvalue tells how well a displacement of the typical point is seen, whatever its direction.
 ///
 /// What the noise of the normals seems to tell is taken out before a direction is called weak or strong: along a smooth
-/// corridor, seen with 2 cm of noise, that is 0.0003 and all there is; with 5 cm, and with doors, it is 0.0013 of
-/// 0.0027.
+/// corridor that is all there is.
 class InformationAnalysis {
 public:
   /// \param weak_threshold eigenvalues per correspondence below this are weak; 0: none is, and noise is not looked for

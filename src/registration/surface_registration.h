@@ -62,7 +62,16 @@ struct SurfaceRegistration {
   /// Log-likelihood of the points where the pose has them, over that of points that may be anywhere within a metre.
   double evidence = 0.0;
   std::size_t points = 0;  ///< that took part
+
+  /// Part of the points that lie on surfaces of the target.
+  [[nodiscard]] double explained() const
+  {
+    return points > 0 ? static_cast<double>(report.plane_inliers) / static_cast<double>(points) : 0.0;
+  }
 };
+
+/// What the map explains less of is in doubt.
+inline constexpr double kBorneOut = 0.5;
 
 /// Bit-identical for every number of threads.
 [[nodiscard]] SurfaceRegistration registerSurfaces(const SurfaceProblem& problem);

@@ -128,6 +128,29 @@ TEST(MotionEstimate, TurnsAreExpectedToBeAsRestlessAsTheyWere)
   EXPECT_GT(calm, 0.001) << "no less than it was";
 }
 
+/// A scan whose stamp does not advance may be of the last one's instant or of a later one.
+TEST(MotionEstimate, AnUnknownTimeFreesThePoseAlongTheMotion)
+{
+  std::mt19937 random(8);
+  const Vector6 velocity = test::randomTwist(random, 1.0, 0.1);
+  constexpr double kNoTime = 1e-3;
+  constexpr double kOnePeriod = 1.0;
+  for (const double true_periods : {0.0, 1.0}) {
+    MotionEstimate motion = afterSteps(velocity, 20);
+    const double sure = motion.poseCovariance().trace();
+    const SE3 truth = motion.pose() * exp(Vector6(true_periods * velocity));
+    motion.predict(kNoTime, std::nullopt, kOnePeriod);
+    EXPECT_GT(motion.poseCovariance().trace(), sure + 0.9 * velocity.squaredNorm());
+    motion.correct(truth, 1e-6 * Matrix6::Identity());
+    EXPECT_LT(poseDistance(motion.pose(), truth), 1e-3);
+    EXPECT_LT((motion.velocity() - velocity).norm(), 0.02) << "of that it tells nothing";
+    MotionEstimate usual = afterSteps(velocity, 20);
+    motion.predict(1.0);
+    usual.predict(1.0);
+    EXPECT_LT(motion.poseCovariance().trace(), 1.5 * usual.poseCovariance().trace());
+  }
+}
+
 TEST(MotionEstimate, ForgetsTheMotionAlongADirectionAndNoOther)
 {
   MotionEstimate motion = afterSteps(0.3 * Vector6(Vector6::Unit(0)), 10);
@@ -181,6 +204,20 @@ TEST(MotionHint, IsFollowedAsFarAsItIsSure)
     EXPECT_LT(poseDistance(unsure.pose(), alone.pose()), 1e-6);
     EXPECT_LT(motion.poseCovariance().trace(), 1e-2 * alone.poseCovariance().trace());
     EXPECT_NEAR(unsure.poseCovariance().trace() / alone.poseCovariance().trace(), 1.0, 1e-6);
+  }
+}
+
+TEST(MotionHint, LeavesACovarianceHoweverSureItIs)
+{
+  std::mt19937 random(9);
+  for (const double sigma : {1e-7, 1e-2}) {
+    MotionEstimate motion = afterSteps(Vector6::Zero(), 5);
+    for (int i = 0; i < 100; ++i) {
+      motion.predict(1.0, hintOf(exp(test::randomTwist(random, 1.0, 0.1)), sigma));
+      const Eigen::Matrix<double, 12, 12> covariance = motion.covariance();
+      EXPECT_LT((covariance - covariance.transpose()).cwiseAbs().maxCoeff(), 1e-12);
+      EXPECT_GT(covariance.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-15) << sigma << ' ' << i;
+    }
   }
 }
 

@@ -30,13 +30,32 @@ TEST(ScanClock, CountsPeriods)
   EXPECT_EQ(clock.tick(std::numeric_limits<double>::quiet_NaN()), 1.0);
 }
 
+/// What went by without a stamp is in the next one.
+TEST(ScanClock, NoPeriodIsCountedTwice)
+{
+  ScanClock clock = steadyClock();
+  double periods = clock.tick(std::nullopt) + clock.tick(100.2);
+  EXPECT_NEAR(periods, 2.0, 1e-9);
+  periods += clock.tick(std::nullopt) + clock.tick(std::nullopt) + clock.tick(100.6);
+  EXPECT_NEAR(periods, 6.0, 1e-9) << "two without a stamp, and one that is missing";
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(clock.tick(std::nullopt), 1.0);
+    EXPECT_NEAR(clock.tick(100.8 + 0.2 * i), 1.0, 1e-9);
+  }
+  EXPECT_NEAR(clock.period(), 0.1, 1e-9);
+}
+
 TEST(ScanClock, StampsThatDoNotAdvanceAreNoTime)
 {
   ScanClock clock = steadyClock();
   EXPECT_EQ(clock.tick(100.0), 0.0);
   EXPECT_EQ(clock.tick(100.0 + 1e-7), 0.0);  // a motion divided by it would be no velocity
   EXPECT_EQ(clock.tick(99.8), 0.0);
+  EXPECT_GE(clock.error(), 1.0);
   EXPECT_NEAR(clock.tick(99.9), 1.0, 1e-9);
+  EXPECT_EQ(clock.error(), 1.0) << "since when is not known either";
+  EXPECT_NEAR(clock.tick(100.0), 1.0, 1e-9);
+  EXPECT_EQ(clock.error(), 0.0);
 }
 
 TEST(ScanClock, AClockThatWasSetTellsNothing)

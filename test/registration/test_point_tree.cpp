@@ -67,7 +67,7 @@ TEST(PointTree, FindsWhatLookingAtAllPointsFinds)
       const int found = tree.nearest(query, squared);
       ASSERT_GE(found, 0);
       EXPECT_EQ(squared, expected[0]);
-      EXPECT_FLOAT_EQ((tree.points()[static_cast<std::size_t>(found)] - query).squaredNorm(), expected[0]);
+      EXPECT_EQ(squaredDistance(tree.points()[static_cast<std::size_t>(found)], query), expected[0]);
       NearestPoints nearest;
       tree.nearest(query, 14, nearest);
       ASSERT_EQ(nearest.count(), 14);

@@ -61,9 +61,8 @@ struct RegistrationParameters {
   RobustKernel kernel = RobustKernel::cauchy;
   /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
   double kernel_scale = 0.05;
-  /// Most planes that are registered, evenly taken from those of the scan, and a sixth as many edges; >= 100. With 1500
-  /// a registration takes a third longer; errors in the warehouse are a twelfth less, those of cities and highways
-  /// alike.
+  /// Most planes that are registered, evenly taken from those of the scan, and a sixth as many edges; >= 100. The
+  /// time grows with them, and errors where planes are near fall a little.
   int max_features = 1000;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
   /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are

@@ -1,0 +1,60 @@
+/// \file odometry_run.h
+/// What every engine of the odometry keeps from scan to scan.
+#pragma once
+
+#include "motion/pending_hint.h"
+#include "motion/scan_clock.h"
+#include "odometry/map_building.h"
+#include "odometry/scan_preparation.h"
+#include "odometry/stopwatch.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+namespace pcl_floam {
+
+struct OdometryRun {
+  explicit OdometryRun(const OdometryParameters& p) : parameters(p), map_building(p), clock(p.scan_period) {}
+
+  OdometryParameters parameters;
+  MapBuilding map_building;
+  ScanClock clock;
+  SE3 initial_pose;  ///< of the first scan, at the instant of the parameters
+  PreparedScan scan;
+  PendingHint hint;
+  double sweep_fraction = 0.0;  ///< of the last scan that told of it
+  double periods = 0.0;         ///< since the last scan that was registered ...
+  double periods_error = 0.0;   ///< ... and how far off that may be
+  OdometryReport report;
+  Stopwatch watch;
+
+  void beginScan(std::size_t points, std::optional<double> stamp)
+  {
+    report = OdometryReport();
+    report.points = points;
+    watch.start();
+    hint.elapse();
+    periods += clock.tick(stamp);
+    periods_error = std::hypot(periods_error, clock.error());
+  }
+
+  void reachScan()
+  {
+    periods = 0.0;
+    periods_error = 0.0;
+    hint.reach();
+  }
+
+  /// Periods since the last scan that a velocity holds for: it is not known for ever.
+  [[nodiscard]] double periodsKnown() const
+  {
+    constexpr double kLongest = 10.0;
+    return std::min(periods, kLongest);
+  }
+};
+
+}  // namespace pcl_floam
