@@ -165,7 +165,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
   SurfaceRegistration found = registerSurfaces(problem);
-  if (!is_judged && found.explained() < kBorneOut && seek(sweep)) {
+  if (!is_judged && found.explained() < kBorneOut && seek(sweep, found)) {
     found = registerSurfaces(problemFor(sweep));
   }
   if (found.report.hasConverged() && found.explained() < kByChance) {
@@ -187,15 +187,16 @@ void Track::predict(const Sweep& sweep)
 
 /// Goes to where the sweep is explained best, if that is better than from the prediction. After a time without scans it
 /// may be anywhere around where it was, and where it would be by now, turned by any angle about its axis.
+/// \param found from the prediction
 /// \return whether it is elsewhere
-bool Track::seek(const Sweep& sweep)
+bool Track::seek(const Sweep& sweep, const SurfaceRegistration& found)
 {
   constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   constexpr int kTurns = 18;
   constexpr double kReach = 1.0;   // m
   constexpr double kTurned = 0.4;  // rad
   if (sweep.periods <= kLong) {
-    return goToBest(sweep, {motion_.pose()}, kGivenOff, kGivenTurned);
+    return found.explained() >= kByChance && goToBest(sweep, {motion_.pose()}, kGivenOff, kGivenTurned);
   }
   std::vector<SE3> guesses;
   for (int turn = 0; turn < kTurns; ++turn) {

@@ -65,7 +65,7 @@ public:
 private:
   void predict(const Sweep& sweep);
   SurfaceRegistration registerPredicted(const Sweep& sweep, bool is_judged);
-  bool seek(const Sweep& sweep);
+  bool seek(const Sweep& sweep, const SurfaceRegistration& found);
   bool goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn);
   void settle(const Sweep& sweep, const SE3& guess, double far, double far_turn);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
