@@ -14,8 +14,6 @@ namespace {
 /// A keyframe, in sides of the finest cells and in rad.
 constexpr double kKeyframeSides = 0.3;
 constexpr double kKeyframeTurn = 0.1;
-/// Standard deviations that a registration begins with.
-constexpr double kLook = 3.0;
 /// How far off a pose may be that somebody gives, m and rad.
 constexpr double kGivenOff = 3.0;
 constexpr double kGivenTurned = 0.25;
@@ -27,6 +25,12 @@ Matrix6 covarianceOf(double translation, double rotation)
   Vector6 variance;
   variance << Eigen::Vector3d::Constant(translation * translation), Eigen::Vector3d::Constant(rotation * rotation);
   return variance.asDiagonal();
+}
+
+/// Of a guess that may be so far off in all directions.
+Matrix6 reachOf(double far, double far_turn)
+{
+  return covarianceOf(far / std::sqrt(3.0), far_turn / std::sqrt(3.0));
 }
 
 /// Distortion Compensation, first stage (Eq. 3 and 4).
@@ -60,6 +64,11 @@ double squaredError(const SE3& motion, const MotionHint& hint)
   return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
 }
 
+bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
+{
+  return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
+}
+
 }  // namespace
 
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
@@ -75,7 +84,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
-    problem.reach = covarianceOf(far / (kLook * std::sqrt(3.0)), kTurnPerMetre * far / (kLook * std::sqrt(3.0)));
+    problem.reach = reachOf(far, kTurnPerMetre * far);
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = problem.looks_for_weak = round + 1 == rounds;
@@ -216,7 +225,7 @@ bool Track::goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double
   bool is_elsewhere = false;
   for (const SE3& guess : guesses) {
     const SurfaceRegistration found = registerFrom(sweep, guess, far, far_turn);
-    if (found.report.hasConverged() && (!best.report.hasConverged() || found.evidence > best.evidence)) {
+    if (isBetter(found, best)) {
       best = found;
       is_elsewhere = true;
     }
@@ -264,7 +273,7 @@ SurfaceRegistration Track::registerFrom(const Sweep& sweep, const SE3& guess, do
   problem.prior.covariance = MotionEstimate(guess).covariance();
   problem.prior.periods_between = 0.0;
   problem.prior.pose_counts = false;
-  problem.reach = covarianceOf(far / (kLook * std::sqrt(3.0)), far_turn / (kLook * std::sqrt(3.0)));
+  problem.reach = reachOf(far, far_turn);
   problem.wants_evidence = true;
   return registerSurfaces(problem);
 }

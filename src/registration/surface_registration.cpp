@@ -15,8 +15,6 @@ namespace {
 
 /// What a pose may be off where nothing is known against it, m.
 constexpr double kLeastDoubt = 0.02;
-/// So many standard deviations of the guess are looked at in the first iteration; halved with each.
-constexpr double kFirstLook = 3.0;
 /// The first iterations, which look far, take one point in so many, if there are enough.
 constexpr std::size_t kFirstStride = 4;
 constexpr std::size_t kManyPoints = 800;
@@ -67,7 +65,7 @@ private:
   {
     report.termination = Termination::iteration_limit;
     SurfaceSums sums;
-    double look = kFirstLook;
+    double look = 1.0;  // halved with each
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
       const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);

@@ -46,7 +46,7 @@ struct SurfaceProblem {
   SurfaceTerm scan;   ///< points taken by space
   SurfaceTerm edges;  ///< the paper's edge features
   SweepPrior prior;
-  Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess that bounds how far the first iterations look
+  Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess: the first iteration looks so far
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   bool wants_evidence = false;   ///< else the result has none

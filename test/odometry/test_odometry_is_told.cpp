@@ -3,8 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -39,26 +37,27 @@ TEST(OdometryIsTold, LocalizesInAMapMadeBefore)
 }
 
 #ifndef PCL_FLOAM_TEST_FEATURES
-/// In a map of a third of the room, the whole of it is mostly somewhere else.
+/// Two of three returns come from where the map has nothing.
 TEST(OdometryIsTold, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
 {
-  const auto partOf = [](const Cloud& scan, bool whole) {
-    Cloud part;
-    std::copy_if(scan.begin(), scan.end(), std::back_inserter(part.points),
-                 [whole](const PointXYZIRT& p) { return whole || p.y > 2.5F; });
-    part.resize(part.points.size());
-    return part;
-  };
   Odometry<PointXYZIRT> mapping(defaults());
   for (int k = 0; k < kScans; ++k) {
-    mapping.track(partOf(sweep(steadyPath, k), false));
+    mapping.track(sweep(steadyPath, k));
   }
-  for (const bool whole : {false, true}) {
+  const Cloud scan = sweep(steadyPath, 0);
+  Cloud strange = scan;
+  for (const float up : {20.0F, 40.0F}) {
+    for (PointXYZIRT point : scan) {
+      point.z += up;
+      strange.push_back(point);
+    }
+  }
+  for (const bool is_strange : {false, true}) {
     Odometry<PointXYZIRT> odometry(defaults());
     odometry.localizeIn(mapping.map(), SE3(), MapUse::frozen);
-    const OdometryReport& report = odometry.track(partOf(sweep(steadyPath, 0), whole));
-    EXPECT_EQ(report.state, whole ? TrackingState::doubtful : TrackingState::tracked) << report.explained;
-    EXPECT_EQ(report.reason.empty(), !whole);
+    const OdometryReport& report = odometry.track(is_strange ? strange : scan);
+    EXPECT_EQ(report.state, is_strange ? TrackingState::doubtful : TrackingState::tracked) << report.explained;
+    EXPECT_EQ(report.reason.empty(), !is_strange);
   }
 }
 #endif
