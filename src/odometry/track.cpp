@@ -171,8 +171,12 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 /// A pose that the map does not bear out may be due to a prediction that was farther off than could be known.
 SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
 {
+  constexpr double kLook = 3.0;  // standard deviations, while it is not decided how the sensor began to move
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
+  if (is_judged) {
+    problem.reach *= kLook * kLook;
+  }
   SurfaceRegistration found = registerSurfaces(problem);
   if (!is_judged && found.explained() < kBorneOut && seek(sweep, found)) {
     found = registerSurfaces(problemFor(sweep));

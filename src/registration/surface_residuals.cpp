@@ -14,9 +14,10 @@ namespace {
 
 /// Standard deviation of a return's place, m.
 constexpr double kRangeNoise = 0.02;
-/// Standard deviation of a laser's direction from the one it is said to have, rad: 0.07 degrees, as calibrations of
-/// spinning lidars find it (Glennie and Lichti 2010; Glennie, Kusari and Facchin 2016).
-constexpr double kDirectionError = 1.2e-3;
+/// How far a laser's direction is from the one it is said to have, one standard deviation in rad: half of the 0.07
+/// degrees that calibrations of spinning lidars find (Glennie and Lichti 2010; Glennie, Kusari and Facchin 2016). With
+/// all of it, far ground would count so little that cars that keep pace outweigh it.
+constexpr double kDirectionError = 6e-4;
 /// All of a laser's points share it: of a plane it is the fewest lasers that count, not their points.
 constexpr double kLasersOfAPlane = 3.0;
 /// Width of the kernel in standard deviations (Geman and McClure): beyond it a residual hardly counts.
@@ -24,13 +25,6 @@ constexpr double kKernelWidth = 2.0;
 
 constexpr std::size_t kPointsPerChunk = 64;
 static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
-
-/// \return 1 or 0
-int fits(double squared, double variance)
-{
-  constexpr double kFits = 3.0;  // standard deviations
-  return squared < kFits * kFits * variance ? 1 : 0;
-}
 
 /// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x).
 void addNormalsNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
@@ -123,16 +117,16 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double along = std::max(0.0, from_center.squaredNorm() - r * r);
   const double extent = std::max(plane.extent, kNoExtent);
   const double lever = 1.0 + along / extent;
-  const double by_direction = kDirectionError * kDirectionError * plane.direction.cross(p.arm).squaredNorm();
-  const double own = kRangeNoise * kRangeNoise + plane.thickness + by_direction;
-  const double variance = own + lever * (plane.thickness / plane.count + by_direction / kLasersOfAPlane);
+  const double across = weighs_evidence ? 0.0 : plane.direction.cross(p.arm).norm();  // there it testifies for itself
+  const double by_direction = kDirectionError * kDirectionError * across * across;
+  const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
+                          by_direction * (1.0 + lever / kLasersOfAPlane);
   const double w = weight(r * r, variance, plane.direction, p, sums);
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
   addNormalsNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
   ++sums.planes;
-  sums.fits += fits(r * r, own);  // a plane's extrapolation bears out nothing
 }
 
 /// Eq. 5 and 13: the distance across the line, in two directions.
@@ -143,12 +137,10 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double length = across.norm();
   const Eigen::Vector3d first =
       length > 0.0 ? Eigen::Vector3d(across / length) : Eigen::Vector3d(line.direction.unitOrthogonal());
-  const double variance = kRangeNoise * kRangeNoise + line.thickness;
-  const double w = weight(length * length, variance, first, p, sums);
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, sums);
   rows.add(first, p.arm, length, w, p.since_middle);
   rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
   ++sums.lines;
-  sums.fits += fits(length * length, variance);
 }
 
 /// The distance to the nearest point, as far as it is felt: in three directions u of felt = sum d u u^T (LDL^T).
@@ -158,10 +150,8 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const Eigen::Vector3d r = p.place - near.center;
   const double length = r.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
-  const double variance = kRangeNoise * kRangeNoise + near.thickness;
-  const double w = weight(length * length, variance, direction, p, sums);
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, sums);
   ++sums.points;
-  sums.fits += fits(length * length, variance);
   Eigen::Matrix3d rest = near.felt;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double d = rest(i, i);
@@ -177,6 +167,7 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
                                 SurfaceSums& sums) const
 {
+  constexpr double kFits = 3.0;       // standard deviations
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
   Eigen::Matrix<double, 6, 1> row;
   row << direction, p.arm.cross(direction);
@@ -188,6 +179,7 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
   sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
   sums.squares += robust * squared;
   sums.robust_weight += robust;
+  sums.fits += squared < kFits * kFits * variance ? 1 : 0;
   if (weighs_evidence) {
     const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
     sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density);
