@@ -11,8 +11,8 @@ namespace pcl_floam {
 namespace {
 
 constexpr std::size_t kRememberedPeriods = 31;  // a few seconds: longer than a disturbance
-constexpr double kClockWasSet = 100.0;  // periods
-constexpr double kNoTime = 0.01;        // periods; a velocity over less would be the noise of the pose
+constexpr double kClockWasSet = 100.0;          // periods
+constexpr double kNoTime = 0.01;                // periods; a velocity over less would be the noise of the pose
 
 }  // namespace
 

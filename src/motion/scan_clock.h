@@ -17,7 +17,8 @@ public:
   /// not advance. A hundred and more, forwards or back, mean that the clock was set: that is 1, too.
   double tick(std::optional<double> stamp);
 
-  /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at all.
+  /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at
+  /// all.
   [[nodiscard]] double error() const;
 
   /// Seconds from sweep to sweep; 0 while unknown.

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <random>
 #include <thread>
 #include <utility>
@@ -216,6 +217,60 @@ TEST(Odometry, StampsTellOfAGap)
     }
   }
 }
+
+#ifndef PCL_FLOAM_TEST_FEATURES
+/// They fit a map here and there by chance, and must not enter it.
+TEST(Odometry, PointsAnywhereAreNoPose)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> anywhere(-60.0F, 60.0F);
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    const bool is_strange = k == 14;
+    if (is_strange) {
+      for (PointXYZIRT& point : scan) {
+        point.getVector3fMap() = Eigen::Vector3f(anywhere(random), anywhere(random), anywhere(random));
+      }
+    }
+    const std::size_t planes = odometry.map().size(FeatureKind::plane);
+    const OdometryReport& report = odometry.track(scan);
+    EXPECT_EQ(report.state == TrackingState::predicted, is_strange) << "scan " << k;
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
+    EXPECT_TRUE(!is_strange || odometry.map().size(FeatureKind::plane) == planes);
+  }
+}
+
+/// Further from where it was expected than any motion tells of.
+TEST(Odometry, IsFoundAgainAfterAJump)
+{
+  const auto jumpingPath = [](double t) {
+    return t <= 14.0 ? steadyPath(t) : steadyPath(t) * SE3(expSO3({0.0, 0.0, 0.2}), Eigen::Vector3d(-0.5, 0.8, 0.0));
+  };
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    const OdometryReport& report = odometry.track(sweep(jumpingPath, k));
+    EXPECT_LT(error(report.world_T_sensor, jumpingPath, k), k == 14 ? 0.2 : 0.1) << "scan " << k;
+  }
+}
+
+/// The same scan may come twice, with its time, and a time may be missing or stand still.
+TEST(Odometry, StampsMayStandStillOrBeMissing)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    std::optional<double> stamp = 100.0 + 0.1 * k;
+    switch (k % 8) {
+      case 5: *stamp -= 0.1; break;
+      case 7: stamp.reset(); break;
+      default: break;
+    }
+    const Cloud scan = sweep(acceleratedPath, k);
+    EXPECT_NE(odometry.track(scan, stamp).state, TrackingState::predicted);
+    EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << "scan " << k;
+  }
+}
+#endif
 
 TEST(Odometry, StartsWithTheFirstUsableScan)
 {

@@ -186,6 +186,31 @@ TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
   EXPECT_LT(report.covariance(2, 2), 1e-4);
 }
 
+/// A laser that points a little elsewhere than it is said to misses a floor by the more the farther it is.
+TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
+{
+  std::mt19937 random(12);
+  const Corner floor(1);
+  double near_information = 0.0;
+  for (const double range : {4.0, 100.0}) {
+    std::vector<ScanPoint> points(900);
+    for (ScanPoint& point : points) {
+      const double azimuth = test::uniform(random, M_PI);
+      point.x = static_cast<float>(range * std::cos(azimuth));
+      point.y = static_cast<float>(range * std::sin(azimuth));
+      point.z = static_cast<float>(Corner::kWall);
+    }
+    SurfaceProblem problem = problemOf(points, floor);
+    problem.locked = {true, true, false, true, true, true};
+    const double information = registerSurfaces(problem).report.information(2, 2);
+    if (range < 10.0) {
+      near_information = information;
+    }
+    EXPECT_TRUE(range < 10.0 || information < 0.2 * near_information) << information << " of " << near_information;
+    EXPECT_GT(information, 0.0);
+  }
+}
+
 TEST(SurfaceRegistration, LockedDegreesOfFreedomKeepTheGuess)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));

@@ -224,7 +224,6 @@ TEST(Soak, FaultsAreToldAndNothingGrows)
   if (scans >= 10000) {  // a short run may meet anything on a busy machine
     EXPECT_LT(record.milliseconds.back(), 10.0 * median);
   }
-  // In a short run the room's map still fills.
   EXPECT_LE(bytesInUse(), record.bytes_after_a_quarter * 5 / 4);
 }
 
