@@ -56,6 +56,9 @@ struct WorldOptions {
 /// A motion-capture room of 10 x 8 m with furniture and a walking person; 60 s at walking pace.
 [[nodiscard]] World makeRoom(const WorldOptions& options);
 
+/// A garage: low ceiling with beams and pipes, columns alike, rows of parked cars, people; some 250 m at up to 3 m/s.
+[[nodiscard]] World makeCarPark(const WorldOptions& options);
+
 /// Streets with facades, trees, poles, parked and moving cars, slopes and crossings; a loop of more than 1 km.
 [[nodiscard]] World makeUrban(const WorldOptions& options);
 

@@ -51,7 +51,7 @@ class EveryWorld : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Simulation, EveryWorld,
                          testing::Values("warehouse", "room", "urban", "highway", "corridor", "tunnel", "handheld",
-                                         "open-road", "town", "motorway"),
+                                         "open-road", "town", "motorway", "car-park"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
                            std::replace(name.begin(), name.end(), '-', '_');
@@ -170,8 +170,11 @@ TEST(Simulation, WorldsAreAsLongAndAsFastAsTheySay)
     const char* world;
     double length, speed;  // m, m/s
   };
-  constexpr std::array<Expectation, 4> kExpectations{
-      {{"warehouse", 300.0, 2.0}, {"urban", 1000.0, 12.0}, {"highway", 1000.0, 25.0}, {"corridor", 125.0, 1.5}}};
+  constexpr std::array<Expectation, 5> kExpectations{{{"warehouse", 300.0, 2.0},
+                                                      {"urban", 1000.0, 12.0},
+                                                      {"highway", 1000.0, 25.0},
+                                                      {"corridor", 125.0, 1.5},
+                                                      {"car-park", 200.0, 3.0}}};
   for (const auto& [world, length, speed] : kExpectations) {
     const MotionSpline motion = makeWorld(world, {3, false, 1, false}).sensor_motion;
     double gone = 0.0;
@@ -207,7 +210,7 @@ TEST(Simulation, NothingRunsIntoTheSensor)
 
 TEST(Simulation, MovingObjectsAreSeenWhereThereAreAny)
 {
-  for (const char* world : {"warehouse", "room", "urban", "highway"}) {
+  for (const char* world : {"warehouse", "room", "urban", "highway", "car-park"}) {
     Simulation simulation(optionsFor(world));
     std::size_t moving = 0;
     for (std::size_t number = 0; number < 200; number += 20) {
