@@ -52,6 +52,14 @@ void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edge
   }
 }
 
+void PreparedScan::takeForMap(const std::vector<ScanPoint>& by_space)
+{
+  features.clear();
+  for (const ScanPoint& point : by_space) {
+    features.planes.push_back({point.x, point.y, point.z, point.time, 0.0F, point.index});
+  }
+}
+
 void PreparedScan::describeIn(OdometryReport& report) const
 {
   report.structure = lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;

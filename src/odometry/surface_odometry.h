@@ -66,6 +66,9 @@ struct SurfaceOdometry : OdometryRun {
     scan.takeEdges(cloud.size, sweep.edges);
     report.milliseconds.features = watch.lap();
     scan.describeIn(report);
+    if (!scan.lines.valid()) {
+      scan.takeForMap(sweep.dense);
+    }
   }
 
   void samplePoints(const CloudView& cloud)

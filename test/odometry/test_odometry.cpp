@@ -359,8 +359,7 @@ TEST(Odometry, NeedsNoScanLines)
 {
   std::mt19937 random(5);
   const Eigen::Matrix3d turn = expSO3({0.9, 0.5, 0.3});
-  Odometry<pcl::PointXYZ> odometry;
-  for (int k = 0; k < 8; ++k) {
+  const auto scanAt = [&](int k) {
     pcl::PointCloud<pcl::PointXYZ> scan;
     for (const PointXYZIRT& point : sweep([](double t) { return steadyPath(std::floor(t)); }, k)) {
       pcl::PointXYZ turned;
@@ -368,12 +367,20 @@ TEST(Odometry, NeedsNoScanLines)
       scan.push_back(turned);
     }
     std::shuffle(scan.begin(), scan.end(), random);
-    const OdometryReport& report = odometry.track(scan);
+    return scan;
+  };
+  Odometry<pcl::PointXYZ> odometry;
+  for (int k = 0; k < 8; ++k) {
+    const OdometryReport& report = odometry.track(scanAt(k));
     EXPECT_EQ(report.scan_lines, 0U);
     EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
     EXPECT_LT((odometry.pose().translation - turn * steadyPath(k).translation).norm(), 0.05) << "scan " << k;
     EXPECT_EQ(report.engine, OdometryEngine::surfaces);
   }
+  Odometry<pcl::PointXYZ> later;
+  later.localizeIn(odometry.map(), SE3(Eigen::Matrix3d::Identity(), turn * steadyPath(6).translation));
+  EXPECT_EQ(later.track(scanAt(5)).state, TrackingState::tracked);
+  EXPECT_LT((later.pose().translation - turn * steadyPath(5).translation).norm(), 0.05);
 }
 
 TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)
