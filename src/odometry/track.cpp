@@ -64,6 +64,15 @@ double squaredError(const SE3& motion, const MotionHint& hint)
   return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
 }
 
+/// What fits no better than points anywhere would is no pose.
+SurfaceRegistration unlessByChance(SurfaceRegistration found)
+{
+  if (found.report.hasConverged() && found.explained() < kByChance) {
+    found.report.termination = Termination::too_few_correspondences;
+  }
+  return found;
+}
+
 bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
 {
   return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
@@ -143,7 +152,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   keeps_map_ = keeps_map;
   keyframe_ = guess;
   settle(sweep, guess, kGivenOff, kGivenTurned);
-  SurfaceRegistration found = registerSurfaces(problemFor(sweep));
+  SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
   if (found.report.hasConverged()) {
     update(sweep, found);
     updateMap(sweep);
@@ -154,6 +163,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 {
   const MotionEstimate before = motion_;
+  const int waited_before = sweeps_to_wait_;
   is_keyframe_ = false;
   predict(sweep);
   SurfaceRegistration registration = registerPredicted(sweep, is_judged);
@@ -164,6 +174,7 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
     update(sweep, registration);
   } else {
     motion_ = before;
+    sweeps_to_wait_ = waited_before;
   }
   return registration;
 }
@@ -181,10 +192,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
   if (!is_judged && found.explained() < kBorneOut && seek(sweep, found)) {
     found = registerSurfaces(problemFor(sweep));
   }
-  if (found.report.hasConverged() && found.explained() < kByChance) {
-    found.report.termination = Termination::too_few_correspondences;
-  }
-  return found;
+  return unlessByChance(std::move(found));
 }
 
 /// Motion Estimation (Eq. 2).

@@ -117,7 +117,8 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double along = std::max(0.0, from_center.squaredNorm() - r * r);
   const double extent = std::max(plane.extent, kNoExtent);
   const double lever = 1.0 + along / extent;
-  const double across = weighs_evidence ? 0.0 : plane.direction.cross(p.arm).norm();  // there it testifies for itself
+  // As evidence a laser's own points count, too, which share its error.
+  const double across = weighs_evidence ? 0.0 : plane.direction.cross(p.arm).norm();
   const double by_direction = kDirectionError * kDirectionError * across * across;
   const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
                           by_direction * (1.0 + lever / kLasersOfAPlane);
