@@ -56,6 +56,11 @@ inline double angleError(const SE3& estimate, const Path& path, int k, double in
   return rotationAngle(estimate.rotation.transpose() * truth.rotation);
 }
 
+inline bool sameBits(const SE3& a, const SE3& b)
+{
+  return a.rotation == b.rotation && a.translation == b.translation;
+}
+
 constexpr int kScans = 18;
 
 }  // namespace pcl_floam::test

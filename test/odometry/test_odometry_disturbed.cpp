@@ -1,0 +1,143 @@
+// What goes wrong with scans and their stamps: blind, missing, out of place, at random.
+#include "support/moving_room.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+namespace pcl_floam::test {
+namespace {
+
+TEST(OdometryDisturbed, PredictsOverABlindScanAndTracksAgain)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    const bool blind = k == 8 || k == 9;
+    if (blind) {
+      for (PointXYZIRT& point : scan) {
+        point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
+      }
+      scan.is_dense = false;
+    }
+    const OdometryReport& report = odometry.track(scan);
+    if (k > 0) {
+      EXPECT_EQ(report.state, blind ? TrackingState::predicted : TrackingState::tracked) << "scan " << k;
+    }
+    EXPECT_EQ(report.reason.empty(), !blind);
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+TEST(OdometryDisturbed, KeepsGoingOverMissingScans)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    const bool missing = k == 6 || k == 7 || k == 12;
+    const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(steadyPath, k));
+    EXPECT_EQ(report.state == TrackingState::predicted, missing) << "scan " << k;
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+TEST(OdometryDisturbed, StampsTellOfAGap)
+{
+  // Three sweeps were never delivered, and nobody said so: the stamps do.
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    if (k < 8 || k > 10) {
+      EXPECT_NE(odometry.track(sweep(steadyPath, k), 100.0 + 0.1 * k).state, TrackingState::predicted);
+      EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+    }
+  }
+}
+
+#ifndef PCL_FLOAM_TEST_FEATURES
+/// They fit a map here and there by chance, and must not enter it.
+TEST(OdometryDisturbed, PointsAnywhereAreNoPose)
+{
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> anywhere(-60.0F, 60.0F);
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    const bool is_strange = k == 14;
+    if (is_strange) {
+      for (PointXYZIRT& point : scan) {
+        point.getVector3fMap() = Eigen::Vector3f(anywhere(random), anywhere(random), anywhere(random));
+      }
+    }
+    const std::size_t planes = odometry.map().size(FeatureKind::plane);
+    const OdometryReport& report = odometry.track(scan);
+    EXPECT_EQ(report.state == TrackingState::predicted, is_strange) << "scan " << k;
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
+    EXPECT_TRUE(!is_strange || odometry.map().size(FeatureKind::plane) == planes);
+  }
+}
+
+/// Further from where it was expected than any motion tells of.
+TEST(OdometryDisturbed, IsFoundAgainAfterAJump)
+{
+  const auto jumpingPath = [](double t) {
+    return t <= 14.0 ? steadyPath(t) : steadyPath(t) * SE3(expSO3({0.0, 0.0, 0.2}), Eigen::Vector3d(-0.5, 0.8, 0.0));
+  };
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    const OdometryReport& report = odometry.track(sweep(jumpingPath, k));
+    EXPECT_LT(error(report.world_T_sensor, jumpingPath, k), k == 14 ? 0.2 : 0.1) << "scan " << k;
+  }
+}
+
+/// The same scan may come twice, with its time, and a time may be missing or stand still.
+TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    std::optional<double> stamp = 100.0 + 0.1 * k;
+    switch (k % 8) {
+      case 5: *stamp -= 0.1; break;
+      case 7: stamp.reset(); break;
+      default: break;
+    }
+    const Cloud scan = sweep(acceleratedPath, k);
+    EXPECT_NE(odometry.track(scan, stamp).state, TrackingState::predicted);
+    EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << "scan " << k;
+  }
+}
+#endif
+
+TEST(OdometryDisturbed, StartsWithTheFirstUsableScan)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  EXPECT_EQ(odometry.track(Cloud()).state, TrackingState::not_started);
+  EXPECT_EQ(odometry.trackMissing().state, TrackingState::not_started);
+  Cloud blank = sweep(steadyPath, 0);
+  for (PointXYZIRT& point : blank) {
+    point.x = point.y = point.z = 0.0F;
+  }
+  EXPECT_EQ(odometry.track(blank).state, TrackingState::not_started);
+  EXPECT_FALSE(odometry.report().reason.empty());
+  EXPECT_TRUE(sameBits(odometry.pose(), SE3()));
+  EXPECT_TRUE(odometry.map().empty());
+  for (int k = 0; k < 4; ++k) {
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.03);
+  }
+}
+
+TEST(OdometryDisturbed, ASecondBlindScanDoesNotHarmTheStart)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  odometry.track(sweep(steadyPath, 0));
+  EXPECT_EQ(odometry.trackMissing().state, TrackingState::predicted);
+  for (int k = 2; k < 10; ++k) {
+    EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, TrackingState::tracked);
+    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
