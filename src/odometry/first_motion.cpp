@@ -12,17 +12,12 @@ namespace pcl_floam {
 namespace {
 
 constexpr double kNear = 0.5;  // m: as far as a registration finds a motion from a guess
+const FirstLook kNearRest = {Vector6::Zero(), kNear, 1};
+const FirstLook kAroundRest = {Vector6::Zero(), 2.0, 5};
 
 struct FirstMotion {
   Vector6 velocity;
   double evidence = 0.0;
-};
-
-/// A guess to begin with.
-struct FirstLook {
-  Vector6 velocity;
-  double far;  ///< m, that it may be off
-  int rounds;
 };
 
 /// The direction along which the position is known least.
@@ -61,22 +56,28 @@ public:
   {
   }
 
-  /// Adds the motions that are found. \return the last one's registration
-  RegistrationReport lookAt(const std::vector<FirstLook>& looks, std::vector<FirstMotion>& motions) const
+  [[nodiscard]] RegistrationReport lookAt(const FirstLook& look) const
+  {
+    return Track(settings_, side_).findMotion(first_, second_, look).report;
+  }
+
+  /// The motions that are found.
+  [[nodiscard]] std::vector<FirstMotion> lookAt(const std::vector<FirstLook>& looks, const Eigen::Vector3d& open) const
   {
     std::vector<RegistrationReport> found(looks.size());
     std::vector<double> evidence(looks.size());
     eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
-      Track track(settings_, side_);
-      found[i] = track.findMotion(first_, second_, looks[i].velocity, looks[i].far, looks[i].rounds).report;
+      Track track(settings_, side_, open);
+      found[i] = track.findMotion(first_, second_, looks[i]).report;
       evidence[i] = track.evidence();
     });
+    std::vector<FirstMotion> motions;
     for (std::size_t i = 0; i < looks.size(); ++i) {
       if (found[i].hasConverged()) {
         motions.push_back({log(found[i].target_T_source) / second_.periods, evidence[i]});
       }
     }
-    return found.empty() ? RegistrationReport() : found.back();
+    return motions;
   }
 
 private:
@@ -87,11 +88,11 @@ private:
   Sweep second_;
 };
 
-/// Along the open direction both ways, and as it is told.
+/// From rest, along the open direction both ways, and as it is told.
 std::vector<FirstLook> looksAlong(const Eigen::Vector3d& open, const Sweep& second)
 {
   constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
-  std::vector<FirstLook> looks;
+  std::vector<FirstLook> looks = {kAroundRest, kNearRest};
   if (second.hint) {
     looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
   }
@@ -125,20 +126,20 @@ std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
 
 }  // namespace
 
-std::vector<Vector6> likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings,
-                                        double side)
+FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings, double side)
 {
-  constexpr double kFar = 2.0;  // m
-  constexpr int kFarRounds = 5;
   const TwoSweeps sweeps(first, second, settings, side);
-  std::vector<FirstMotion> motions;
-  const Matrix6 information =
-      sweeps.lookAt({{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}}, motions).information;
-  if (motions.empty()) {
+  RegistrationReport from_rest = sweeps.lookAt(kNearRest);
+  if (!from_rest.hasConverged()) {
+    from_rest = sweeps.lookAt(kAroundRest);
+  }
+  if (!from_rest.hasConverged()) {
     return {};
   }
-  sweeps.lookAt(looksAlong(leastKnown(information), second), motions);
-  return likeliest(std::move(motions), kNear / second.periods);
+  FirstMotions motions;
+  motions.open = leastKnown(from_rest.information);
+  motions.likely = likeliest(sweeps.lookAt(looksAlong(motions.open, second), motions.open), kNear / second.periods);
+  return motions;
 }
 
 }  // namespace pcl_floam

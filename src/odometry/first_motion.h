@@ -8,10 +8,15 @@
 
 namespace pcl_floam {
 
-/// Velocities per period, the likeliest first, that registrations of two thinned sweeps lead to: from rest, along the
-/// direction that this leaves open, and as it is told. Nothing if the sweeps do not fit at all.
+struct FirstMotions {
+  std::vector<Vector6> likely;  ///< velocities per period, the likeliest first; none if the sweeps do not fit at all
+  Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< the direction of which they tell least, in the sensor's axes
+};
+
+/// Those that registrations of two thinned sweeps lead to: from rest, along the direction that this leaves open, and as
+/// it is told.
 /// \param side m, of the finest cells of a track's map
-[[nodiscard]] std::vector<Vector6> likelyFirstMotions(const Sweep& first, const Sweep& second,
-                                                      const TrackSettings& settings, double side);
+[[nodiscard]] FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings,
+                                              double side);
 
 }  // namespace pcl_floam

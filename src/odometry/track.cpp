@@ -80,13 +80,13 @@ bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
 
 }  // namespace
 
-SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
-                                      int rounds)
+SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
 {
   constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
   SurfaceRegistration found;
-  SE3 first_T_second = exp(second.periods * velocity);
-  for (int round = 0; round < rounds; ++round, far *= 0.5) {
+  SE3 first_T_second = exp(second.periods * look.velocity);
+  double far = look.far;
+  for (int round = 0; round < look.rounds; ++round, far *= 0.5) {
     const Vector6 motion = log(first_T_second) / second.periods;
     map_.emplace(side_, settings_.horizon);
     map_->insert(first, {SE3(), first.fraction * motion});
@@ -96,24 +96,24 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.reach = reachOf(far, kTurnPerMetre * far);
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
-    problem.wants_evidence = problem.looks_for_weak = round + 1 == rounds;
+    problem.open = open_;
+    problem.wants_evidence = problem.looks_for_weak = round + 1 == look.rounds;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;
     }
     first_T_second = found.report.target_T_source;
   }
-  evidence_ = found.evidence / kResidualsPerIndependentOne;
+  evidence_ = found.evidence;
   if (second.hint) {
     evidence_ -= 0.5 * squaredError(first_T_second, *second.hint);
   }
   return found;
 }
 
-SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
-                                 int rounds)
+SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const FirstLook& look)
 {
-  SurfaceRegistration found = findMotion(first, second, velocity, far, rounds);
+  SurfaceRegistration found = findMotion(first, second, look);
   if (found.report.hasConverged()) {
     map_.emplace(side_, settings_.horizon);
     map_->insert(first, {SE3(), first.fraction / second.periods * log(found.report.target_T_source)});
@@ -186,6 +186,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = is_judged;
   if (is_judged) {
+    problem.open = open_;
     problem.reach *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);
@@ -315,7 +316,7 @@ void Track::judge(const SurfaceRegistration& registration)
   Eigen::Matrix<double, 6, 1> off;
   off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
   const Eigen::Matrix<double, 6, 6> expected = motion_.poseCovariance() + registration.report.covariance;
-  evidence_ += registration.evidence / kResidualsPerIndependentOne - 0.5 * off.dot(expected.ldlt().solve(off));
+  evidence_ += registration.evidence - 0.5 * off.dot(expected.ldlt().solve(off));
 }
 
 /// Distortion Compensation Update (Eq. 12).

@@ -22,22 +22,30 @@ struct TrackSettings {
   int threads = 1;
 };
 
+/// Where a first motion is sought.
+struct FirstLook {
+  Vector6 velocity = Vector6::Zero();  ///< per period
+  double far = 0.0;                    ///< m, that it may be off
+  int rounds = 1;                      ///< each looks half as far as the one before
+};
+
 /// Predict, register, judge, update.
 class Track {
 public:
   /// \param side m, of the map's finest cells
-  Track(const TrackSettings& settings, double side) : settings_(settings), side_(side) {}
+  /// \param open along which its rivals have moved differently, in the sensor's axes (\ref SurfaceProblem::open)
+  Track(const TrackSettings& settings, double side, const Eigen::Vector3d& open = Eigen::Vector3d::Zero())
+      : settings_(settings), side_(side), open_(open)
+  {
+  }
 
   /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the
   /// second registered with what comes out, again and again, looking less and less far. Tells the pose of the second
   /// and the evidence for it; the track has not begun.
-  /// \param velocity per period, to begin with
-  /// \param far      m, that it may be off
-  SurfaceRegistration findMotion(const Sweep& first, const Sweep& second, const Vector6& velocity, double far,
-                                 int rounds);
+  SurfaceRegistration findMotion(const Sweep& first, const Sweep& second, const FirstLook& look);
 
   /// Begins at the origin with the motion that the first two sweeps tell.
-  SurfaceRegistration begin(const Sweep& first, const Sweep& second, const Vector6& velocity, double far, int rounds);
+  SurfaceRegistration begin(const Sweep& first, const Sweep& second, const FirstLook& look);
 
   /// Begins with sweeps whose poses are known, in the order of time.
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses);
@@ -76,6 +84,7 @@ private:
 
   TrackSettings settings_;
   double side_;
+  Eigen::Vector3d open_;
   std::optional<TrackMap> map_;
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again

@@ -123,12 +123,13 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   constexpr double kOff = 0.25;  // m: what the likely motions may still be off
   constexpr int kRounds = 2;
   Outcome outcome;
-  const std::vector<Vector6> likely = likelyFirstMotions(first_, sweep, settings_, side_);
-  std::vector<Track> tracks(likely.size(), Track(settings_, side_));
-  std::vector<SurfaceRegistration> found(likely.size());
-  eachSideBySide(settings_.threads, likely.size(),
-                 [&](std::size_t i) { found[i] = tracks[i].begin(first_, sweep, likely[i], kOff, kRounds); });
-  for (std::size_t i = 0; i < likely.size(); ++i) {
+  const FirstMotions motions = likelyFirstMotions(first_, sweep, settings_, side_);
+  std::vector<Track> tracks(motions.likely.size(), Track(settings_, side_, motions.open));
+  std::vector<SurfaceRegistration> found(tracks.size());
+  eachSideBySide(settings_.threads, tracks.size(), [&](std::size_t i) {
+    found[i] = tracks[i].begin(first_, sweep, {motions.likely[i], kOff, kRounds});
+  });
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
     suppose(found[i], std::move(tracks[i]), outcome);
   }
   if (!isTracking()) {

@@ -203,6 +203,7 @@ private:
     residuals.reach = look * look * problem_.reach;
     residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
+    residuals.open = pose_.rotation * problem_.open;
     residuals.weighs_evidence = weighs_evidence_;
     residuals.threads = problem_.threads;
     SurfaceSums sums = residuals.sumsOf(problem_.scan, stride);

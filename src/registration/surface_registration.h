@@ -50,7 +50,9 @@ struct SurfaceProblem {
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   bool wants_evidence = false;   ///< else the result has none
-  bool looks_for_weak = true;    ///< directions that the scan does not tell of
+  /// Along which the poses whose evidence is compared differ, a unit vector in the sensor's axes; zero: anyhow.
+  Eigen::Vector3d open = Eigen::Vector3d::Zero();
+  bool looks_for_weak = true;  ///< directions that the scan does not tell of
   int max_iterations = 12;
   int threads = 1;
 };
@@ -59,7 +61,8 @@ struct SurfaceRegistration {
   RegistrationReport report;
   Vector6 velocity = Vector6::Zero();     ///< per period, in the sensor's axes
   Matrix12 posterior = Matrix12::Zero();  ///< of pose and velocity, as the prior's
-  /// Log-likelihood of the points where the pose has them, over that of points that may be anywhere within a metre.
+  /// Log-likelihood of the points where the pose has them, over that of points that may be anywhere within a metre; and
+  /// how many more of those that tell of the open direction fit than do not.
   double evidence = 0.0;
   std::size_t points = 0;  ///< that took part
 

@@ -1,6 +1,5 @@
 #include "registration/surface_residuals.h"
 
-#include "map/laser_support.h"
 #include "registration/residual_rows.h"
 
 #include <algorithm>
@@ -93,8 +92,7 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
     p.arm = pose.rotation * sensor.undistorted(point);
     p.place = places[i - begin] = pose.translation + p.arm;
     p.since_middle = periods * MovingSensor::sinceMiddle(point);
-    // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
-    lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
+    lasers[i - begin] = point.laser;
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
@@ -117,12 +115,12 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double along = std::max(0.0, from_center.squaredNorm() - r * r);
   const double extent = std::max(plane.extent, kNoExtent);
   const double lever = 1.0 + along / extent;
-  // As evidence a laser's own points count, too, which share its error.
-  const double across = weighs_evidence ? 0.0 : plane.direction.cross(p.arm).norm();
+  const double across = plane.direction.cross(p.arm).norm();
   const double by_direction = kDirectionError * kDirectionError * across * across;
   const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
                           by_direction * (1.0 + lever / kLasersOfAPlane);
-  const double w = weight(r * r, variance, plane.direction, p, sums);
+  const double along_open = open.dot(plane.direction);
+  const double w = weight(r * r, variance, plane.direction, p, along_open * along_open, sums);
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
@@ -138,7 +136,8 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double length = across.norm();
   const Eigen::Vector3d first =
       length > 0.0 ? Eigen::Vector3d(across / length) : Eigen::Vector3d(line.direction.unitOrthogonal());
-  const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, sums);
+  const double told = open.cross(line.direction).squaredNorm();
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, told, sums);
   rows.add(first, p.arm, length, w, p.since_middle);
   rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
   ++sums.lines;
@@ -151,7 +150,8 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const Eigen::Vector3d r = p.place - near.center;
   const double length = r.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
-  const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, sums);
+  const double told = open.dot(near.felt * open);
+  const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, told, sums);
   ++sums.points;
   Eigen::Matrix3d rest = near.felt;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -165,8 +165,10 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
+/// \param told how much of the open direction the residual tells, in [0,1]: what does not tell of it (the road) has
+///             errors that many share, and is evidence with all of them; what does, by itself
 double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
-                                SurfaceSums& sums) const
+                                double told, SurfaceSums& sums) const
 {
   constexpr double kFits = 3.0;       // standard deviations
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
@@ -180,10 +182,12 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
   sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
   sums.squares += robust * squared;
   sums.robust_weight += robust;
-  sums.fits += squared < kFits * kFits * variance ? 1 : 0;
+  const bool fits = squared < kFits * kFits * variance;
+  sums.fits += fits ? 1 : 0;
   if (weighs_evidence) {
     const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
-    sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density);
+    sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
+    sums.evidence += fits ? told : -told;
   }
   return robust / variance;
 }
