@@ -6,10 +6,13 @@
 
 namespace pcl_floam {
 
+/// The laser of a point that is compared with all there is, its own laser's curves included.
+inline constexpr std::uint32_t kNoLaser = 0xFFFFFFFFU;
+
 /// A laser as a bit; those of sensors with more than 64 share them.
 inline std::uint64_t laserBit(std::uint32_t laser)
 {
-  return std::uint64_t{1} << (laser % 64U);
+  return laser == kNoLaser ? 0 : std::uint64_t{1} << (laser % 64U);
 }
 
 /// What one laser draws in one keyframe is a curve on its own cone, whatever it hits: a shape needs several curves. The

@@ -12,8 +12,6 @@ namespace pcl_floam {
 namespace {
 
 constexpr double kNear = 0.5;  // m: as far as a registration finds a motion from a guess
-const FirstLook kNearRest = {Vector6::Zero(), kNear, 1};
-const FirstLook kAroundRest = {Vector6::Zero(), 2.0, 5};
 
 struct FirstMotion {
   Vector6 velocity;
@@ -56,28 +54,22 @@ public:
   {
   }
 
-  [[nodiscard]] RegistrationReport lookAt(const FirstLook& look) const
-  {
-    return Track(settings_, side_).findMotion(first_, second_, look).report;
-  }
-
-  /// The motions that are found.
-  [[nodiscard]] std::vector<FirstMotion> lookAt(const std::vector<FirstLook>& looks, const Eigen::Vector3d& open) const
+  /// Adds the motions that are found. \return the last one's registration
+  RegistrationReport lookAt(const std::vector<FirstLook>& looks, std::vector<FirstMotion>& motions) const
   {
     std::vector<RegistrationReport> found(looks.size());
     std::vector<double> evidence(looks.size());
     eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
-      Track track(settings_, side_, open);
+      Track track(settings_, side_);
       found[i] = track.findMotion(first_, second_, looks[i]).report;
       evidence[i] = track.evidence();
     });
-    std::vector<FirstMotion> motions;
     for (std::size_t i = 0; i < looks.size(); ++i) {
       if (found[i].hasConverged()) {
         motions.push_back({log(found[i].target_T_source) / second_.periods, evidence[i]});
       }
     }
-    return motions;
+    return found.empty() ? RegistrationReport() : found.back();
   }
 
 private:
@@ -88,11 +80,11 @@ private:
   Sweep second_;
 };
 
-/// From rest, along the open direction both ways, and as it is told.
+/// Along the open direction both ways, and as it is told.
 std::vector<FirstLook> looksAlong(const Eigen::Vector3d& open, const Sweep& second)
 {
   constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
-  std::vector<FirstLook> looks = {kAroundRest, kNearRest};
+  std::vector<FirstLook> looks;
   if (second.hint) {
     looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
   }
@@ -128,18 +120,18 @@ std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
 
 FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings, double side)
 {
+  constexpr double kFar = 2.0;  // m
+  constexpr int kFarRounds = 5;
   const TwoSweeps sweeps(first, second, settings, side);
-  RegistrationReport from_rest = sweeps.lookAt(kNearRest);
-  if (!from_rest.hasConverged()) {
-    from_rest = sweeps.lookAt(kAroundRest);
-  }
-  if (!from_rest.hasConverged()) {
+  std::vector<FirstMotion> motions;
+  const Matrix6 information =
+      sweeps.lookAt({{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}}, motions).information;
+  if (motions.empty()) {
     return {};
   }
-  FirstMotions motions;
-  motions.open = leastKnown(from_rest.information);
-  motions.likely = likeliest(sweeps.lookAt(looksAlong(motions.open, second), motions.open), kNear / second.periods);
-  return motions;
+  const Eigen::Vector3d open = leastKnown(information);
+  sweeps.lookAt(looksAlong(open, second), motions);
+  return {likeliest(std::move(motions), kNear / second.periods), open};
 }
 
 }  // namespace pcl_floam

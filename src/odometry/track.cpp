@@ -96,7 +96,6 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.reach = reachOf(far, kTurnPerMetre * far);
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
-    problem.open = open_;
     problem.wants_evidence = problem.looks_for_weak = round + 1 == look.rounds;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
@@ -309,14 +308,17 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   return problem;
 }
 
-/// What a hypothesis is worth: how it explains the sweep, and how little the sensor must have been pushed about.
+/// What a hypothesis is worth: how it explains the last sweeps, and how little the sensor must have been pushed about.
+/// What was long ago counts less, since a moving sensor's map says little at first, and a resting one's all it ever
+/// will.
 void Track::judge(const SurfaceRegistration& registration)
 {
+  constexpr double kKept = 0.8;  // of the evidence, from sweep to sweep
   const SE3& found = registration.report.target_T_source;
   Eigen::Matrix<double, 6, 1> off;
   off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
   const Eigen::Matrix<double, 6, 6> expected = motion_.poseCovariance() + registration.report.covariance;
-  evidence_ += registration.evidence - 0.5 * off.dot(expected.ldlt().solve(off));
+  evidence_ = kKept * evidence_ + registration.evidence - 0.5 * off.dot(expected.ldlt().solve(off));
 }
 
 /// Distortion Compensation Update (Eq. 12).

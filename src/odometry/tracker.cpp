@@ -21,7 +21,7 @@ constexpr double kMapSpacing = 0.3;
 constexpr std::size_t kFirstSweeps = 12;
 /// A track whose evidence is so much less than the best one's is given up: false ones lead by less while the map is
 /// young, and fall behind by more where a scene is clear.
-constexpr double kHopeless = 100.0;
+constexpr double kHopeless = 200.0;
 
 /// So many are followed.
 constexpr std::size_t kMostHypotheses = 4;

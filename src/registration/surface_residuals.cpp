@@ -1,5 +1,6 @@
 #include "registration/surface_residuals.h"
 
+#include "map/laser_support.h"
 #include "registration/residual_rows.h"
 
 #include <algorithm>
@@ -92,7 +93,8 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
     p.arm = pose.rotation * sensor.undistorted(point);
     p.place = places[i - begin] = pose.translation + p.arm;
     p.since_middle = periods * MovingSensor::sinceMiddle(point);
-    lasers[i - begin] = point.laser;
+    // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
+    lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
@@ -172,6 +174,7 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
 {
   constexpr double kFits = 3.0;       // standard deviations
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
+  constexpr double kTelling = 0.5;    // of an independent residual: what one counts that tells of nothing else
   Eigen::Matrix<double, 6, 1> row;
   row << direction, p.arm.cross(direction);
   const double width = kKernelWidth * kKernelWidth * (variance + row.dot(reach * row));
@@ -187,7 +190,7 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
   if (weighs_evidence) {
     const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
     sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
-    sums.evidence += fits ? told : -told;
+    sums.evidence += kTelling * (fits ? told : -told);
   }
   return robust / variance;
 }
