@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 namespace pcl_floam {
 
@@ -191,6 +192,27 @@ void readRun(const CloudView& cloud, const std::vector<std::int32_t>& index, std
 
 }  // namespace
 
+namespace {
+
+/// Points of the same azimuth stay in the order of their numbers.
+void sortByAzimuth(const CloudView& cloud, std::int32_t* points, std::size_t count)
+{
+  std::vector<std::uint64_t> keys(count);  // azimuth, whose bits rise with it, since it is not negative; and number
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto i = static_cast<std::size_t>(points[n]);
+    const float azimuth = pseudoAzimuth(cloud.x(i), cloud.y(i)) + 0.0F;  // no negative zero
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &azimuth, sizeof(bits));
+    keys[n] = std::uint64_t{bits} << 32U | i;
+  }
+  std::sort(keys.begin(), keys.end());
+  for (std::size_t n = 0; n < count; ++n) {
+    points[n] = static_cast<std::int32_t>(keys[n] & 0xFFFFFFFFU);
+  }
+}
+
+}  // namespace
+
 void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
 {
   constexpr std::int32_t kSampled = 5;  // one step in so many tells as much as all; odd, since drivers' habits are even
@@ -217,14 +239,8 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t line = 0; line < line_count; ++line) {
     const auto m = static_cast<std::size_t>(line);
-    std::sort(lines.index.begin() + lines.begin[m], lines.index.begin() + lines.begin[m + 1],
-              [&cloud](std::int32_t a, std::int32_t b) {
-                const float azimuth_a =
-                    pseudoAzimuth(cloud.x(static_cast<std::size_t>(a)), cloud.y(static_cast<std::size_t>(a)));
-                const float azimuth_b =
-                    pseudoAzimuth(cloud.x(static_cast<std::size_t>(b)), cloud.y(static_cast<std::size_t>(b)));
-                return azimuth_a != azimuth_b ? azimuth_a < azimuth_b : a < b;
-              });
+    sortByAzimuth(cloud, &lines.index[static_cast<std::size_t>(lines.begin[m])],
+                  static_cast<std::size_t>(lines.begin[m + 1] - lines.begin[m]));
   }
 }
 

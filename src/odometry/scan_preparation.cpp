@@ -23,6 +23,17 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   }
 }
 
+bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters& parameters)
+{
+  if (timing.valid() || !lines.sorted_by_azimuth || parameters.timing_source == ScanTimingSource::none ||
+      parameters.compensation == CompensationMode::none) {
+    return false;
+  }
+  timing = findScanTiming(scan, lines, ScanTimingSource::azimuth, ScanRotation::clockwise, parameters.threads);
+  sweep_fraction = timing.valid() ? 1.0 : 0.0;
+  return timing.valid();
+}
+
 void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters& parameters)
 {
   extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);

@@ -60,6 +60,7 @@ struct SurfaceOdometry : OdometryRun {
   void extractFeatures(const CloudView& cloud)
   {
     scan.findStructure(cloud, parameters, clock.period());
+    sweep.is_direction_known = !scan.supposeTimes(cloud, parameters);
     report.milliseconds.scan_lines = watch.lap();
     sideBySide(
         parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
@@ -135,6 +136,9 @@ struct SurfaceOdometry : OdometryRun {
       first_scans.push_back(scan.features);
       first_poses.add();
     }
+    if (outcome.changed_track && !map_building.hasPrior()) {
+      placeTrack();
+    }
     if (outcome.corrected && !map_building.hasPrior()) {
       correctFirstPoses();
     }
@@ -148,11 +152,22 @@ struct SurfaceOdometry : OdometryRun {
     return tracker.step(sweep);
   }
 
+  void placeTrack() { world_T_track = initial_pose * tracker.poses().front().at(poseFraction()).inverse(); }
+
+  /// Of the sweep, as time runs in it.
+  [[nodiscard]] double poseFraction() const
+  {
+    const double fraction = fractionOf(parameters.pose_instant);
+    return direction() < 0.0 ? 1.0 - fraction : fraction;
+  }
+
+  [[nodiscard]] double direction() const { return tracker.track().settings().direction; }
+
   void correctFirstPoses()
   {
     const std::vector<SweepPose>& poses = tracker.poses();
-    world_T_track = initial_pose * poses.front().at(fractionOf(parameters.pose_instant)).inverse();
-    report.corrected_poses = first_poses.correct(poses, world_T_track, fractionOf(parameters.pose_instant));
+    placeTrack();
+    report.corrected_poses = first_poses.correct(poses, world_T_track, poseFraction());
     if (first_poses.jumped()) {
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
     }
@@ -190,9 +205,12 @@ struct SurfaceOdometry : OdometryRun {
   {
     report.state = state;
     report.world_T_sensor = initial_pose;
+    if (tracker.isTracking() && direction() == 0.0) {
+      report.timing_source = ScanTimingSource::none;
+    }
     report.provisional = tracker.isAmbiguous();
     if (tracker.isTracking()) {
-      report.world_T_sensor = world_T_track * poseNow().at(fractionOf(parameters.pose_instant));
+      report.world_T_sensor = world_T_track * poseNow().at(poseFraction());
       turnIntoWorld(report, world_T_track);
     }
     if (state == TrackingState::predicted && tracker.isTracking()) {
@@ -219,7 +237,7 @@ struct SurfaceOdometry : OdometryRun {
       return tracker.track().pose();
     }
     const MotionEstimate motion = predicted();
-    return {motion.pose(), sweep_fraction * motion.velocity()};
+    return {motion.pose(), direction() * sweep_fraction * motion.velocity()};
   }
 
   [[nodiscard]] MotionEstimate predicted() const

@@ -89,7 +89,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
   for (int round = 0; round < look.rounds; ++round, far *= 0.5) {
     const Vector6 motion = log(first_T_second) / second.periods;
     map_.emplace(side_, settings_.horizon);
-    map_->insert(first, {SE3(), first.fraction * motion});
+    map_->insert(first, {SE3(), fractionOf(first) * motion});
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
@@ -115,7 +115,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   SurfaceRegistration found = findMotion(first, second, look);
   if (found.report.hasConverged()) {
     map_.emplace(side_, settings_.horizon);
-    map_->insert(first, {SE3(), first.fraction / second.periods * log(found.report.target_T_source)});
+    map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
     update(second, found);
     updateMap(second);
   }
@@ -130,7 +130,7 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);
     velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
-    pose_ = {poses[i], sweeps[i].fraction * velocity};
+    pose_ = {poses[i], fractionOf(sweeps[i]) * velocity};
     if (i == 0) {
       motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
       motion_.place(poses[i], covarianceOf(kKnown, kKnown));
@@ -159,15 +159,15 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   return found;
 }
 
-SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
+SurfaceRegistration Track::step(const Sweep& sweep, Rivals rivals)
 {
   const MotionEstimate before = motion_;
   const int waited_before = sweeps_to_wait_;
   is_keyframe_ = false;
   predict(sweep);
-  SurfaceRegistration registration = registerPredicted(sweep, is_judged);
+  SurfaceRegistration registration = registerPredicted(sweep, rivals);
   if (registration.report.hasConverged()) {
-    if (is_judged) {
+    if (rivals != Rivals::none) {
       judge(registration);
     }
     update(sweep, registration);
@@ -179,18 +179,20 @@ SurfaceRegistration Track::step(const Sweep& sweep, bool is_judged)
 }
 
 /// A pose that the map does not bear out may be due to a prediction that was farther off than could be known.
-SurfaceRegistration Track::registerPredicted(const Sweep& sweep, bool is_judged)
+SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
 {
   constexpr double kLook = 3.0;  // standard deviations, while it is not decided how the sensor began to move
   SurfaceProblem problem = problemFor(sweep);
-  problem.wants_evidence = is_judged;
-  if (is_judged) {
+  problem.wants_evidence = rivals != Rivals::none;
+  if (rivals == Rivals::motions) {
     problem.open = open_;
     problem.reach *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);
-  if (!is_judged && found.explained() < kBorneOut && seek(sweep, found)) {
-    found = registerSurfaces(problemFor(sweep));
+  if (rivals != Rivals::motions && found.explained() < kBorneOut && seek(sweep, found)) {
+    SurfaceProblem again = problemFor(sweep);
+    again.wants_evidence = problem.wants_evidence;
+    found = registerSurfaces(again);
   }
   return unlessByChance(std::move(found));
 }
@@ -300,7 +302,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.prior.velocity_before = velocity_before_;
   problem.prior.periods_between = periods_between_;
   problem.prior.covariance = motion_.covariance();
-  problem.prior.fraction = sweep.fraction;
+  problem.prior.fraction = fractionOf(sweep);
   problem.reach = motion_.poseCovariance();
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
@@ -328,7 +330,7 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   motion_.update(registration.report.target_T_source, registration.velocity, registration.posterior);
   pose_ = {motion_.pose(), registration.report.sweep_twist, registration.report.sweep_acceleration};
   if (settings_.compensation == CompensationMode::two_stage) {
-    pose_.twist = sweep.fraction / sweep.periods * log(last.inverse() * pose_.middle);
+    pose_.twist = fractionOf(sweep) / sweep.periods * log(last.inverse() * pose_.middle);
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;

@@ -10,6 +10,7 @@
 
 #include <pcl_floam/filters/motion_compensation_mode.h>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -20,7 +21,11 @@ struct TrackSettings {
   DegreesOfFreedom locked = {};
   double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
   int threads = 1;
+  double direction = 1.0;  ///< of time: -1 if it runs against that of the sweeps' points, 0 if these are of one instant
 };
+
+/// In what other tracks differ from one.
+enum class Rivals : std::uint8_t { none, directions /*of time*/, motions };
 
 /// Where a first motion is sought.
 struct FirstLook {
@@ -54,8 +59,8 @@ public:
   SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);
 
   /// Takes the next sweep; \ref updateMap goes with it.
-  /// \param is_judged whether \ref evidence goes on
-  SurfaceRegistration step(const Sweep& sweep, bool is_judged = false);
+  /// \param rivals if there are any, \ref evidence goes on
+  SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
   /// The map takes in the last sweep, if that is a keyframe.
   void updateMap(const Sweep& sweep);
@@ -69,10 +74,13 @@ public:
   [[nodiscard]] const MotionEstimate& motion() const { return motion_; }
   [[nodiscard]] const SweepPose& pose() const { return pose_; }
   [[nodiscard]] double evidence() const { return evidence_; }
+  [[nodiscard]] const TrackSettings& settings() const { return settings_; }
+  /// Duration of the sweep in periods, as time runs on this track.
+  [[nodiscard]] double fractionOf(const Sweep& sweep) const { return settings_.direction * sweep.fraction; }
 
 private:
   void predict(const Sweep& sweep);
-  SurfaceRegistration registerPredicted(const Sweep& sweep, bool is_judged);
+  SurfaceRegistration registerPredicted(const Sweep& sweep, Rivals rivals);
   bool seek(const Sweep& sweep, const SurfaceRegistration& found);
   bool goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn);
   void settle(const Sweep& sweep, const SE3& guess, double far, double far_turn);

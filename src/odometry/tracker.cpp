@@ -23,10 +23,33 @@ constexpr std::size_t kFirstSweeps = 12;
 /// young, and fall behind by more where a scene is clear.
 constexpr double kHopeless = 200.0;
 
-/// So many are followed.
+/// The same of a direction of time, once it is settled how the sensor began to move.
+constexpr double kWrongDirection = 30.0;
+
+/// So many are followed for each direction of time.
 constexpr std::size_t kMostHypotheses = 4;
 
 }  // namespace
+
+double Tracker::Hypothesis::evidence() const
+{
+  return is_lost ? -HUGE_VAL : track.evidence();
+}
+
+double Tracker::Hypothesis::moved() const
+{
+  return is_lost ? HUGE_VAL : track.pose().middle.translation.norm();
+}
+
+bool Tracker::isLikelier(const Hypothesis& a, const Hypothesis& b)
+{
+  return a.evidence() > b.evidence();
+}
+
+bool Tracker::hasMovedLess(const Hypothesis& a, const Hypothesis& b)
+{
+  return a.moved() < b.moved();
+}
 
 void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
                          const SE3& guess, bool keeps_map)
@@ -40,9 +63,29 @@ void Tracker::place(const SE3& pose)
     prior.guess = pose;
   }
   if (isTracking()) {
-    decide(std::move(hypotheses_[best_]));
-    hypotheses_[0].track.place(pose);
+    keepOneOfEachDirection(isLikelier);
+    kept_.clear();
   }
+  for (Hypothesis& hypothesis : hypotheses_) {
+    hypothesis.track.place(pose);
+  }
+}
+
+/// \param isBefore of two, which to keep
+void Tracker::keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&))
+{
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(), isBefore);
+  std::vector<Hypothesis> kept;
+  for (Hypothesis& hypothesis : hypotheses_) {
+    if (std::none_of(kept.begin(), kept.end(),
+                     [&](const Hypothesis& other) { return other.direction() == hypothesis.direction(); })) {
+      kept.push_back(std::move(hypothesis));
+    }
+  }
+  hypotheses_ = std::move(kept);
+  is_open_ = false;
+  best_ = static_cast<std::size_t>(std::min_element(hypotheses_.begin(), hypotheses_.end(), isLikelier) -
+                                   hypotheses_.begin());
 }
 
 void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
@@ -61,7 +104,7 @@ Tracker::Outcome Tracker::step(const Sweep& sweep)
     return begin(sweep);
   }
   Outcome outcome;
-  if (is_open_) {
+  if (is_open_ || hypotheses_.size() > 1) {
     followUp(sweep, outcome);
     return outcome;
   }
@@ -108,23 +151,60 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   for (const Eigen::Vector3d& point : prior.edges) {
     map.edges.insert(point, laser++);
   }
-  Hypothesis hypothesis{Track(settings_, side_), {}, {}, false};
   Outcome outcome;
-  outcome.registration = hypothesis.track.begin(sweep, std::move(map), prior.guess, prior.keeps_map);
-  if (outcome.registration.report.hasConverged()) {
-    hypotheses_.push_back(std::move(hypothesis));
+  for (const TrackSettings& settings : directionsOf(sweep)) {
+    Hypothesis hypothesis{Track(settings, side_), {}, {}, false};
+    const SurfaceRegistration found = hypothesis.track.begin(sweep, map, prior.guess, prior.keeps_map);
+    if (!isTracking()) {
+      outcome.registration = found;
+    }
+    if (found.report.hasConverged()) {
+      hypotheses_.push_back(std::move(hypothesis));
+    }
+  }
+  if (isTracking()) {
     prior_map_.clear();
   }
   return outcome;
 }
 
+/// What time may be on.
+std::vector<TrackSettings> Tracker::directionsOf(const Sweep& sweep) const
+{
+  std::vector<TrackSettings> directions = {settings_};
+  if (!sweep.is_direction_known) {
+    for (const double other : {-1.0, 0.0}) {
+      directions.push_back(settings_);
+      directions.back().direction = other;
+    }
+  }
+  return directions;
+}
+
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
+{
+  Outcome outcome;
+  directions_ = directionsOf(sweep).size();
+  for (const TrackSettings& settings : directionsOf(sweep)) {
+    findFirstMotion(sweep, settings, outcome);
+  }
+  if (!isTracking()) {
+    return outcome;
+  }
+  kept_ = {first_, sweep};
+  is_open_ = true;
+  giveUpHopeless();
+  first_ = {};
+  outcome.corrected = true;
+  return outcome;
+}
+
+void Tracker::findFirstMotion(const Sweep& sweep, const TrackSettings& settings, Outcome& outcome)
 {
   constexpr double kOff = 0.25;  // m: what the likely motions may still be off
   constexpr int kRounds = 2;
-  Outcome outcome;
-  const FirstMotions motions = likelyFirstMotions(first_, sweep, settings_, side_);
-  std::vector<Track> tracks(motions.likely.size(), Track(settings_, side_, motions.open));
+  const FirstMotions motions = likelyFirstMotions(first_, sweep, settings, side_);
+  std::vector<Track> tracks(motions.likely.size(), Track(settings, side_, motions.open));
   std::vector<SurfaceRegistration> found(tracks.size());
   eachSideBySide(settings_.threads, tracks.size(), [&](std::size_t i) {
     found[i] = tracks[i].begin(first_, sweep, {motions.likely[i], kOff, kRounds});
@@ -132,15 +212,6 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   for (std::size_t i = 0; i < tracks.size(); ++i) {
     suppose(found[i], std::move(tracks[i]), outcome);
   }
-  if (!isTracking()) {
-    return outcome;
-  }
-  giveUpHopeless();
-  kept_ = {first_, sweep};
-  is_open_ = true;
-  first_ = {};
-  outcome.corrected = true;
-  return outcome;
 }
 
 /// Follows the motion that was found from a supposed one, unless it is known already.
@@ -155,10 +226,10 @@ void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& ou
     return;
   }
   const Vector6 motion = hypothesis.track.motion().velocity();
-  hypothesis.poses = {{SE3(), first_.fraction * motion}, hypothesis.track.pose()};
+  hypothesis.poses = {{SE3(), hypothesis.track.fractionOf(first_) * motion}, hypothesis.track.pose()};
   for (Hypothesis& other : hypotheses_) {
     const Eigen::Vector3d apart = other.track.pose().middle.translation - hypothesis.track.pose().middle.translation;
-    if (apart.norm() < kSame) {
+    if (apart.norm() < kSame && other.direction() == hypothesis.direction()) {
       if (hypothesis.track.evidence() > other.track.evidence()) {
         other = std::move(hypothesis);
       }
@@ -171,9 +242,29 @@ void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& ou
 void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 {
   const std::size_t best = best_;
+  if (!stepAll(sweep, outcome)) {
+    return;
+  }
+  outcome.changed_track = best_ != best;
+  outcome.corrected = is_open_ && outcome.changed_track;
+  giveUpHopeless();
+  if (!is_open_) {
+    return;
+  }
+  kept_.push_back(sweep);
+  if (kept_.size() == kFirstSweeps) {
+    settle();
+    outcome.registration.report.target_T_source = track().pose().middle;
+    outcome.corrected = true;
+  }
+}
+
+/// \return whether any track goes on
+bool Tracker::stepAll(const Sweep& sweep, Outcome& outcome)
+{
   std::vector<SurfaceRegistration> found(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
-    found[i] = hypotheses_[i].track.step(sweep, true);
+    found[i] = hypotheses_[i].track.step(sweep, is_open_ ? Rivals::motions : Rivals::directions);
     hypotheses_[i].track.updateMap(sweep);
   });
   bool any = false;
@@ -185,91 +276,66 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
       outcome.registration = any ? outcome.registration : found[i];
       continue;
     }
-    hypothesis.poses.push_back(hypothesis.track.pose());
-    if (!any || hypothesis.track.evidence() > hypotheses_[best_].track.evidence()) {
+    if (is_open_) {
+      hypothesis.poses.push_back(hypothesis.track.pose());
+    }
+    if (!any || hypothesis.evidence() > hypotheses_[best_].evidence()) {
       outcome.registration = found[i];
       best_ = i;
     }
     any = true;
   }
-  if (any) {
-    outcome.corrected = best_ != best;
-    giveUpHopeless();
-    kept_.push_back(sweep);
-    if (kept_.size() == kFirstSweeps) {
-      settle();
-      outcome.registration.report.target_T_source = track().pose().middle;
-      outcome.corrected = true;
-    }
-  }
+  return any;
 }
 
 /// Those that match no more or have fallen behind, but for the best few.
 void Tracker::giveUpHopeless()
 {
-  const auto evidence = [](const Hypothesis& h) { return h.is_lost ? -HUGE_VAL : h.track.evidence(); };
-  const auto less = [&](const Hypothesis& a, const Hypothesis& b) { return evidence(a) < evidence(b); };
-  const double hopeless = evidence(*std::max_element(hypotheses_.begin(), hypotheses_.end(), less)) - kHopeless;
+  const auto best = [this] { return std::min_element(hypotheses_.begin(), hypotheses_.end(), isLikelier); };
+  const double hopeless = best()->evidence() - (is_open_ ? kHopeless : kWrongDirection);
+  const std::size_t most = kMostHypotheses * directions_;
   while (hypotheses_.size() > 1) {
-    const auto last = std::min_element(hypotheses_.begin(), hypotheses_.end(), less);
-    if (evidence(*last) >= hopeless && hypotheses_.size() <= kMostHypotheses) {
+    const auto last = std::max_element(hypotheses_.begin(), hypotheses_.end(), isLikelier);
+    if (last->evidence() >= hopeless && hypotheses_.size() <= most) {
       break;
     }
     hypotheses_.erase(last);
   }
-  best_ =
-      static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), less) - hypotheses_.begin());
+  best_ = static_cast<std::size_t>(best() - hypotheses_.begin());
 }
 
-/// The best hypothesis stays, its first sweeps where its last ones say they were.
+/// The best hypotheses stay, their first sweeps where their last ones say they were.
 void Tracker::settle()
 {
   const bool is_told =
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
   const bool is_open = !hypotheses_[best_].weak.empty() && !is_told;
-  if (is_open) {
-    best_ = leastMoved();
+  keepOneOfEachDirection(is_open ? hasMovedLess : isLikelier);
+  for (Hypothesis& hypothesis : hypotheses_) {
+    settle(hypothesis, is_open);
   }
-  Hypothesis found = std::move(hypotheses_[best_]);
+  kept_.clear();
+}
+
+void Tracker::settle(Hypothesis& found, bool is_open) const
+{
   std::vector<SE3> forwards;
   for (const SweepPose& pose : found.poses) {
     forwards.push_back(pose.middle);
   }
-  const std::vector<SE3> poses = posesFoundBackwards(kept_, forwards, settings_, side_);
+  const std::vector<SE3> poses = posesFoundBackwards(kept_, forwards, found.track.settings(), side_);
   if (!poses.empty()) {
     found.track.begin(kept_, poses);
     found.poses.clear();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::size_t next = std::max<std::size_t>(i, 1);
       const Vector6 velocity = log(poses[next - 1].inverse() * poses[next]) / kept_[next].periods;
-      found.poses.push_back({poses[i], kept_[i].fraction * velocity});
+      found.poses.push_back({poses[i], found.track.fractionOf(kept_[i]) * velocity});
     }
   }
   if (is_open) {
     found.track.forgetAlong(found.weak, static_cast<double>(kept_.size()));
   }
-  decide(std::move(found));
-}
-
-/// From here on there is one.
-void Tracker::decide(Hypothesis found)
-{
-  hypotheses_.clear();
-  hypotheses_.push_back(std::move(found));
-  best_ = 0;
-  is_open_ = false;
-  kept_.clear();
-}
-
-/// Where a motion leaves no trace, none is as good as any.
-std::size_t Tracker::leastMoved() const
-{
-  const auto moved = [](const Hypothesis& h) {
-    return h.is_lost ? HUGE_VAL : h.track.pose().middle.translation.norm();
-  };
-  const auto least = std::min_element(hypotheses_.begin(), hypotheses_.end(),
-                                      [&](const Hypothesis& a, const Hypothesis& b) { return moved(a) < moved(b); });
-  return static_cast<std::size_t>(least - hypotheses_.begin());
 }
 
 }  // namespace pcl_floam

@@ -10,8 +10,9 @@
 namespace pcl_floam {
 
 /// The first two sweeps hardly tell how the sensor moves on an open road. So several motions are followed for the
-/// first sweeps, each by a track of its own, and the one that explains them best stays. Otherwise there is one track
-/// all the time.
+/// first sweeps, each by a track of its own, and the one that explains them best stays. Where nothing tells which way
+/// time runs in a sweep, each way has its tracks, until one explains them better. Otherwise there is one track all the
+/// time.
 class Tracker {
 public:
   explicit Tracker(const TrackSettings& settings) : settings_(settings) {}
@@ -25,7 +26,8 @@ public:
 
   struct Outcome {
     SurfaceRegistration registration;
-    bool corrected = false;  ///< \ref poses are not what they were
+    bool corrected = false;      ///< \ref poses are not what they were
+    bool changed_track = false;  ///< \ref track is another one
   };
 
   /// What is to be registered of all returns, and what enters the map.
@@ -43,9 +45,9 @@ public:
   /// Whether the first poses may yet be corrected.
   [[nodiscard]] bool isOpen() const { return is_open_; }
   /// Whether several motions are followed.
-  [[nodiscard]] bool isAmbiguous() const { return hypotheses_.size() > 1; }
+  [[nodiscard]] bool isAmbiguous() const { return is_open_ && hypotheses_.size() > 1; }
   [[nodiscard]] const Track& track() const { return hypotheses_[best_].track; }
-  /// Of the sweeps since the first one, while \ref isOpen and right after.
+  /// Of the first sweeps, while \ref isOpen, right after, and as long as there are several tracks.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_[best_].poses; }
 
 private:
@@ -54,6 +56,10 @@ private:
     std::vector<SweepPose> poses;
     std::vector<WeakDirection> weak;  // of the last sweep
     bool is_lost = false;
+
+    [[nodiscard]] double direction() const { return track.settings().direction; }
+    [[nodiscard]] double evidence() const;
+    [[nodiscard]] double moved() const;
   };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
@@ -64,12 +70,17 @@ private:
   Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
   Outcome findFirstMotion(const Sweep& sweep);
+  void findFirstMotion(const Sweep& sweep, const TrackSettings& settings, Outcome& outcome);
   void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
+  bool stepAll(const Sweep& sweep, Outcome& outcome);
   void giveUpHopeless();
   void settle();
-  void decide(Hypothesis found);
-  [[nodiscard]] std::size_t leastMoved() const;
+  void settle(Hypothesis& found, bool is_open) const;
+  void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
+  static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
+  static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);
+  [[nodiscard]] std::vector<TrackSettings> directionsOf(const Sweep& sweep) const;
 
   TrackSettings settings_;
   SpatialSampling sampling_;
@@ -79,6 +90,7 @@ private:
   int failed_ = 0;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
+  std::size_t directions_ = 1;  // of time, that are followed
   bool is_open_ = false;
   std::vector<Sweep> kept_;  // while open
 };
