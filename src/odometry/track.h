@@ -52,7 +52,7 @@ public:
   /// Begins at the origin with the motion that the first two sweeps tell.
   SurfaceRegistration begin(const Sweep& first, const Sweep& second, const FirstLook& look);
 
-  /// Begins with sweeps whose poses are known, in the order of time.
+  /// Begins with sweeps whose poses are known, in the order of time; the evidence begins anew.
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses);
 
   /// Begins in a map that was made before, of which the pose is roughly known.

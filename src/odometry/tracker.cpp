@@ -27,7 +27,7 @@ constexpr double kHopeless = 200.0;
 constexpr double kWrongDirection = 30.0;
 
 /// So many are followed for each direction of time.
-constexpr std::size_t kMostHypotheses = 4;
+constexpr std::ptrdiff_t kMostHypotheses = 4;
 
 }  // namespace
 
@@ -184,7 +184,6 @@ std::vector<TrackSettings> Tracker::directionsOf(const Sweep& sweep) const
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
   Outcome outcome;
-  directions_ = directionsOf(sweep).size();
   for (const TrackSettings& settings : directionsOf(sweep)) {
     findFirstMotion(sweep, settings, outcome);
   }
@@ -288,20 +287,22 @@ bool Tracker::stepAll(const Sweep& sweep, Outcome& outcome)
   return any;
 }
 
-/// Those that match no more or have fallen behind, but for the best few.
+/// Those that match no more or have fallen behind, but for the best few. No direction of time is given up before it is
+/// settled how the sensor began to move.
 void Tracker::giveUpHopeless()
 {
-  const auto best = [this] { return std::min_element(hypotheses_.begin(), hypotheses_.end(), isLikelier); };
-  const double hopeless = best()->evidence() - (is_open_ ? kHopeless : kWrongDirection);
-  const std::size_t most = kMostHypotheses * directions_;
-  while (hypotheses_.size() > 1) {
-    const auto last = std::max_element(hypotheses_.begin(), hypotheses_.end(), isLikelier);
-    if (last->evidence() >= hopeless && hypotheses_.size() <= most) {
-      break;
+  std::stable_sort(hypotheses_.begin(), hypotheses_.end(), isLikelier);
+  const double hopeless = hypotheses_[0].evidence() - (is_open_ ? kHopeless : kWrongDirection);
+  for (std::size_t i = hypotheses_.size(); i-- > 1;) {
+    const auto here = hypotheses_.begin() + static_cast<std::ptrdiff_t>(i);
+    const auto better = std::count_if(hypotheses_.begin(), here,
+                                      [&](const Hypothesis& other) { return other.direction() == here->direction(); });
+    const bool is_needless = here->evidence() < hopeless || better >= kMostHypotheses;
+    if (is_needless && (better > 0 || !is_open_)) {
+      hypotheses_.erase(here);
     }
-    hypotheses_.erase(last);
   }
-  best_ = static_cast<std::size_t>(best() - hypotheses_.begin());
+  best_ = 0;
 }
 
 /// The best hypotheses stay, their first sweeps where their last ones say they were.

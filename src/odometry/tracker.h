@@ -90,7 +90,6 @@ private:
   int failed_ = 0;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
-  std::size_t directions_ = 1;  // of time, that are followed
   bool is_open_ = false;
   std::vector<Sweep> kept_;  // while open
 };

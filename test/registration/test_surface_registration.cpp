@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -234,6 +235,29 @@ TEST(SurfaceRegistration, EvidenceIsHighestAtTheTruth)
   const double found = registerSurfaces(problem).evidence;
   problem.locked = {true, true, true, true, true, true};
   EXPECT_GT(found, registerSurfaces(problem).evidence + 100.0);
+}
+
+/// A road that fits a little better elsewhere must not outvote the few points that tell of the way along it.
+TEST(SurfaceRegistration, WhatTellsOfTheOpenDirectionIsTheEvidence)
+{
+  constexpr double kAlong = 0.5;
+  constexpr double kRough = 0.03;
+  std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  points.erase(
+      std::remove_if(points.begin(), points.end(), [](const ScanPoint& p) { return p.x < -3.9F && p.time > 0.1F; }),
+      points.end());  // few of the wall ahead are left
+  const Corner corner(3);
+  SurfaceProblem problem = problemOf(points, corner);
+  problem.wants_evidence = true;
+  problem.locked = {true, true, true, true, true, true};
+  const auto evidenceAt = [&](double x, double z, const Eigen::Vector3d& open) {
+    problem.prior.pose.translation = {x, 0.0, z};
+    problem.open = open;
+    return registerSurfaces(problem).evidence;
+  };
+  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
+  EXPECT_LT(evidenceAt(0.0, kRough, Eigen::Vector3d::Zero()), evidenceAt(kAlong, 0.0, Eigen::Vector3d::Zero()));
+  EXPECT_GT(evidenceAt(0.0, kRough, ahead), evidenceAt(kAlong, 0.0, ahead));
 }
 
 TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)

@@ -1,0 +1,86 @@
+// Clouds without rings, times and order: which way the head turned, and whether it did, shows as the sensor moves.
+
+#include "simulation.h"
+
+#include <pcl_floam/odometry/odometry.h>
+
+#include <pcl/point_types.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <random>
+#include <string>
+
+namespace pcl_floam::simulator {
+
+enum class TimeRuns { with_the_clock, against_it, not_at_all };
+
+class UnknownTimes : public testing::TestWithParam<TimeRuns> {
+protected:
+  static pcl::PointCloud<pcl::PointXYZ> bare(const Sweep& sweep, std::mt19937& random)
+  {
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    for (std::size_t i = 0; i < sweep.cloud.size(); ++i) {
+      const Eigen::Vector3f place =
+          GetParam() == TimeRuns::not_at_all ? Eigen::Vector3f(sweep.exact_at_end[i]) : sweep.cloud[i].getVector3fMap();
+      cloud.emplace_back(place.x(), mirror() * place.y(), place.z());
+    }
+    std::shuffle(cloud.begin(), cloud.end(), random);
+    return cloud;
+  }
+
+  /// In a mirror the head turns the other way.
+  static SE3 seen(const SE3& pose)
+  {
+    const Eigen::Vector3d m(1.0, mirror(), 1.0);
+    return {m.asDiagonal() * pose.rotation * m.asDiagonal(), m.asDiagonal() * pose.translation};
+  }
+
+private:
+  static float mirror() { return GetParam() == TimeRuns::against_it ? -1.0F : 1.0F; }
+};
+
+TEST_P(UnknownTimes, AreToldByTheScans)
+{
+  constexpr std::size_t kScans = 50;
+  SimulationOptions options;
+  options.world = "room";
+  options.seed = 41;
+  Simulation simulation(options);
+  std::mt19937 random(3);
+  Odometry<PointXYZIRT> told;
+  Odometry<pcl::PointXYZ> untold;
+  SE3 world_T_first;
+  double told_off = 0.0;
+  double untold_off = 0.0;
+  ScanTimingSource source = ScanTimingSource::automatic;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    world_T_first = i == 0 ? sweep.world_T_end : world_T_first;
+    const SE3 truth = world_T_first.inverse() * sweep.world_T_end;
+    const SE3 pose = told.track(sweep.cloud, sweep.start_time).world_T_sensor;
+    const OdometryReport& report = untold.track(bare(sweep, random), sweep.start_time);
+    EXPECT_EQ(report.state, i == 0 ? TrackingState::initialized : TrackingState::tracked) << i << report.reason;
+    source = report.timing_source;
+    if (i >= kScans / 2) {
+      told_off = std::max(told_off, (pose.translation - truth.translation).norm());
+      untold_off = std::max(untold_off, (report.world_T_sensor.translation - seen(truth).translation).norm());
+    }
+  }
+  RecordProperty("told_m", std::to_string(told_off));
+  RecordProperty("untold_m", std::to_string(untold_off));
+  EXPECT_EQ(source, GetParam() == TimeRuns::not_at_all ? ScanTimingSource::none : ScanTimingSource::azimuth);
+  EXPECT_LT(untold_off, 1.5 * told_off + 0.005);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, UnknownTimes,
+                         testing::Values(TimeRuns::with_the_clock, TimeRuns::against_it, TimeRuns::not_at_all),
+                         [](const auto& runs) {
+                           return std::string(runs.param == TimeRuns::with_the_clock ? "withTheClock"
+                                              : runs.param == TimeRuns::against_it   ? "againstIt"
+                                                                                     : "notAtAll");
+                         });
+
+}  // namespace pcl_floam::simulator
