@@ -86,7 +86,7 @@ void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
             {{"auto", ScanRotation::automatic},
              {"clockwise", ScanRotation::clockwise},
              {"counterclockwise", ScanRotation::counterclockwise}},
-            "how the head turns, seen from above; for --timing azimuth");
+            "how the head turns, seen from above; where times are the azimuth's");
 }
 
 void addPriorMapOptions(CLI::App& app, OdometryOptions& o)

@@ -22,11 +22,11 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
     return;
   }
   ScanLines lines;
-  ScanTiming timing = findScanTiming(view, lines, parameters.timing_source);
-  if (!timing.valid() && parameters.timing_source != ScanTimingSource::none &&
+  ScanTiming timing = findScanTiming(view, lines, report.timing_source, report.rotation);
+  if (!timing.valid() && report.timing_source != ScanTimingSource::none &&
       parameters.structure != ScanStructure::space) {
     findScanLines(view, parameters.sensor, parameters.scan_line_source, lines);
-    timing = findScanTiming(view, lines, parameters.timing_source);
+    timing = findScanTiming(view, lines, report.timing_source, report.rotation);
   }
   if (!timing.valid()) {
     return;

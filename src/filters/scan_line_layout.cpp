@@ -190,10 +190,6 @@ void readRun(const CloudView& cloud, const std::vector<std::int32_t>& index, std
   computeAzimuths(run.count, run.x.data(), run.y.data(), run.azimuth.data());
 }
 
-}  // namespace
-
-namespace {
-
 /// Points of the same azimuth stay in the order of their numbers.
 void sortByAzimuth(const CloudView& cloud, std::int32_t* points, std::size_t count)
 {
@@ -239,7 +235,7 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t line = 0; line < line_count; ++line) {
     const auto m = static_cast<std::size_t>(line);
-    sortByAzimuth(cloud, &lines.index[static_cast<std::size_t>(lines.begin[m])],
+    sortByAzimuth(cloud, lines.index.data() + lines.begin[m],
                   static_cast<std::size_t>(lines.begin[m + 1] - lines.begin[m]));
   }
 }

@@ -18,13 +18,16 @@ struct FirstMotion {
   double evidence = 0.0;
 };
 
-/// The direction along which the position is known least.
+/// The direction along which the position is known least; zero if that cannot be told.
 Eigen::Vector3d leastKnown(const Matrix6& information)
 {
   const Eigen::Matrix<double, 6, 6> h = information;
   const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
                                                                     h.bottomRightCorner<3, 3>().inverse() *
                                                                     h.bottomLeftCorner<3, 3>();
+  if (!translation.allFinite()) {
+    return Eigen::Vector3d::Zero();
+  }
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(translation).eigenvectors().col(0);
 }
 
@@ -39,6 +42,7 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   sampling.sample(sweep.edges, side, thin.edges);
   thin.periods = sweep.periods;
   thin.fraction = sweep.fraction;
+  thin.is_direction_known = sweep.is_direction_known;
   thin.hint = sweep.hint;
   return thin;
 }

@@ -25,7 +25,9 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
 
 bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters& parameters)
 {
-  if (timing.valid() || !lines.sorted_by_azimuth || parameters.timing_source == ScanTimingSource::none ||
+  const bool may_be_azimuth =
+      parameters.timing_source == ScanTimingSource::automatic || parameters.timing_source == ScanTimingSource::azimuth;
+  if (timing.valid() || !lines.sorted_by_azimuth || !may_be_azimuth ||
       parameters.compensation == CompensationMode::none) {
     return false;
   }
@@ -79,6 +81,9 @@ void PreparedScan::describeIn(OdometryReport& report) const
   report.scan_line_confidence = lines.confidence;
   report.scan_lines = lines.lines();
   report.timing_source = timing.source;
+  if (timing.source == ScanTimingSource::azimuth) {
+    report.rotation = timing.clockwise ? ScanRotation::clockwise : ScanRotation::counterclockwise;
+  }
   report.edges = features.edges.size();
   report.planes = features.planes.size();
 }

@@ -161,7 +161,21 @@ struct SurfaceOdometry : OdometryRun {
     return direction() < 0.0 ? 1.0 - fraction : fraction;
   }
 
-  [[nodiscard]] double direction() const { return tracker.track().settings().direction; }
+  [[nodiscard]] double direction() const
+  {
+    return sweep.is_direction_known ? 1.0 : tracker.track().settings().direction;
+  }
+
+  /// The report speaks of the sweep as it was.
+  void describeTime()
+  {
+    if (direction() == 0.0) {
+      report.timing_source = ScanTimingSource::none;
+    } else if (direction() < 0.0) {
+      report.rotation = ScanRotation::counterclockwise;
+      report.registration.sweep_twist = -report.registration.sweep_twist;
+    }
+  }
 
   void correctFirstPoses()
   {
@@ -205,8 +219,8 @@ struct SurfaceOdometry : OdometryRun {
   {
     report.state = state;
     report.world_T_sensor = initial_pose;
-    if (tracker.isTracking() && direction() == 0.0) {
-      report.timing_source = ScanTimingSource::none;
+    if (tracker.isTracking()) {
+      describeTime();
     }
     report.provisional = tracker.isAmbiguous();
     if (tracker.isTracking()) {

@@ -19,7 +19,7 @@ struct Sweep {
   double periods_error = 0.0;     ///< ... and how far off that may be, one standard deviation
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
-  bool is_direction_known = true;  ///< of time: else it may be the other way, or the points of one instant
+  bool is_direction_known = true;  ///< of time: else it may run the other way, or the points may be of one instant
   std::optional<MotionHint> hint;  ///< of the motion since the sweep before
 };
 

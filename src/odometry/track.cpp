@@ -125,7 +125,6 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses)
 {
   constexpr double kKnown = 0.01;  // m and rad
-  evidence_ = 0.0;
   map_.emplace(side_, settings_.horizon);
   Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -21,7 +21,9 @@ struct TrackSettings {
   DegreesOfFreedom locked = {};
   double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
   int threads = 1;
-  double direction = 1.0;  ///< of time: -1 if it runs against that of the sweeps' points, 0 if these are of one instant
+  /// Of time in sweeps of which it is not known: 1 as their points have it, -1 against it, 0 if they are of one
+  /// instant.
+  double direction = 0.0;
 };
 
 /// In what other tracks differ from one.
@@ -52,7 +54,7 @@ public:
   /// Begins at the origin with the motion that the first two sweeps tell.
   SurfaceRegistration begin(const Sweep& first, const Sweep& second, const FirstLook& look);
 
-  /// Begins with sweeps whose poses are known, in the order of time; the evidence begins anew.
+  /// Begins with sweeps whose poses are known, in the order of time.
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses);
 
   /// Begins in a map that was made before, of which the pose is roughly known.
@@ -74,9 +76,13 @@ public:
   [[nodiscard]] const MotionEstimate& motion() const { return motion_; }
   [[nodiscard]] const SweepPose& pose() const { return pose_; }
   [[nodiscard]] double evidence() const { return evidence_; }
+  void beginEvidence() { evidence_ = 0.0; }
   [[nodiscard]] const TrackSettings& settings() const { return settings_; }
   /// Duration of the sweep in periods, as time runs on this track.
-  [[nodiscard]] double fractionOf(const Sweep& sweep) const { return settings_.direction * sweep.fraction; }
+  [[nodiscard]] double fractionOf(const Sweep& sweep) const
+  {
+    return sweep.is_direction_known ? sweep.fraction : settings_.direction * sweep.fraction;
+  }
 
 private:
   void predict(const Sweep& sweep);

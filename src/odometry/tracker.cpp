@@ -23,7 +23,8 @@ constexpr std::size_t kFirstSweeps = 12;
 /// young, and fall behind by more where a scene is clear.
 constexpr double kHopeless = 200.0;
 
-/// The same of a direction of time, once it is settled how the sensor began to move.
+/// The same of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or so, in
+/// which nothing else differs.
 constexpr double kWrongDirection = 30.0;
 
 /// So many are followed for each direction of time.
@@ -71,6 +72,7 @@ void Tracker::place(const SE3& pose)
   }
 }
 
+/// Their evidence begins anew, so that what is left to tell is the direction.
 /// \param isBefore of two, which to keep
 void Tracker::keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&))
 {
@@ -82,10 +84,13 @@ void Tracker::keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const H
       kept.push_back(std::move(hypothesis));
     }
   }
+  std::stable_sort(kept.begin(), kept.end(), isLikelier);
+  for (Hypothesis& hypothesis : kept) {
+    hypothesis.track.beginEvidence();
+  }
   hypotheses_ = std::move(kept);
   is_open_ = false;
-  best_ = static_cast<std::size_t>(std::min_element(hypotheses_.begin(), hypotheses_.end(), isLikelier) -
-                                   hypotheses_.begin());
+  best_ = 0;
 }
 
 void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
@@ -152,13 +157,15 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
     map.edges.insert(point, laser++);
   }
   Outcome outcome;
-  for (const TrackSettings& settings : directionsOf(sweep)) {
-    Hypothesis hypothesis{Track(settings, side_), {}, {}, false};
-    const SurfaceRegistration found = hypothesis.track.begin(sweep, map, prior.guess, prior.keeps_map);
-    if (!isTracking()) {
-      outcome.registration = found;
+  const std::vector<TrackSettings> all = directions(sweep.is_direction_known);
+  for (const TrackSettings& settings : all) {
+    Hypothesis hypothesis{Track(settings, side_), {}, {}, false, numbered_++};
+    hypothesis.last = hypothesis.track.begin(sweep, &settings == &all.back() ? std::move(map) : TrackMap(map),
+                                             prior.guess, prior.keeps_map);
+    if (hypotheses_.empty()) {
+      outcome.registration = hypothesis.last;
     }
-    if (found.report.hasConverged()) {
+    if (hypothesis.last.report.hasConverged()) {
       hypotheses_.push_back(std::move(hypothesis));
     }
   }
@@ -168,12 +175,12 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   return outcome;
 }
 
-/// What time may be on.
-std::vector<TrackSettings> Tracker::directionsOf(const Sweep& sweep) const
+/// In which time may run in such sweeps; one if that is known.
+std::vector<TrackSettings> Tracker::directions(bool are_known) const
 {
   std::vector<TrackSettings> directions = {settings_};
-  if (!sweep.is_direction_known) {
-    for (const double other : {-1.0, 0.0}) {
+  if (!are_known) {
+    for (const double other : {1.0, -1.0}) {
       directions.push_back(settings_);
       directions.back().direction = other;
     }
@@ -184,7 +191,7 @@ std::vector<TrackSettings> Tracker::directionsOf(const Sweep& sweep) const
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
   Outcome outcome;
-  for (const TrackSettings& settings : directionsOf(sweep)) {
+  for (const TrackSettings& settings : directions(first_.is_direction_known && sweep.is_direction_known)) {
     findFirstMotion(sweep, settings, outcome);
   }
   if (!isTracking()) {
@@ -194,6 +201,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   is_open_ = true;
   giveUpHopeless();
   first_ = {};
+  outcome.registration = hypotheses_[best_].last;
   outcome.corrected = true;
   return outcome;
 }
@@ -217,7 +225,7 @@ void Tracker::findFirstMotion(const Sweep& sweep, const TrackSettings& settings,
 void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& outcome)
 {
   constexpr double kSame = 0.5;  // m
-  Hypothesis hypothesis{std::move(track), {}, {}, false};
+  Hypothesis hypothesis{std::move(track), {}, found, false, numbered_++};
   if (hypotheses_.empty()) {
     outcome.registration = found;
   }
@@ -240,81 +248,67 @@ void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& ou
 
 void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 {
-  const std::size_t best = best_;
-  if (!stepAll(sweep, outcome)) {
+  if (!stepAll(sweep)) {
+    outcome.registration = hypotheses_[best_].last;
     return;
   }
-  outcome.changed_track = best_ != best;
-  outcome.corrected = is_open_ && outcome.changed_track;
+  const std::size_t before = hypotheses_[best_].number;
   giveUpHopeless();
-  if (!is_open_) {
-    return;
+  outcome.changed_track = hypotheses_[best_].number != before;
+  outcome.corrected = is_open_ && outcome.changed_track;
+  if (is_open_) {
+    kept_.push_back(sweep);
+    if (kept_.size() == kFirstSweeps) {
+      settle();
+      outcome.corrected = true;
+    }
   }
-  kept_.push_back(sweep);
-  if (kept_.size() == kFirstSweeps) {
-    settle();
-    outcome.registration.report.target_T_source = track().pose().middle;
-    outcome.corrected = true;
-  }
+  outcome.registration = hypotheses_[best_].last;
+  outcome.registration.report.target_T_source = track().pose().middle;
 }
 
 /// \return whether any track goes on
-bool Tracker::stepAll(const Sweep& sweep, Outcome& outcome)
+bool Tracker::stepAll(const Sweep& sweep)
 {
-  std::vector<SurfaceRegistration> found(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
-    found[i] = hypotheses_[i].track.step(sweep, is_open_ ? Rivals::motions : Rivals::directions);
-    hypotheses_[i].track.updateMap(sweep);
-  });
-  bool any = false;
-  for (std::size_t i = 0; i < hypotheses_.size(); ++i) {
     Hypothesis& hypothesis = hypotheses_[i];
-    hypothesis.weak = found[i].report.weak_directions;
-    hypothesis.is_lost = !found[i].report.hasConverged();
-    if (hypothesis.is_lost) {
-      outcome.registration = any ? outcome.registration : found[i];
-      continue;
-    }
-    if (is_open_) {
+    hypothesis.last = hypothesis.track.step(sweep, is_open_ ? Rivals::motions : Rivals::directions);
+    hypothesis.is_lost = !hypothesis.last.report.hasConverged();
+    if (is_open_ && !hypothesis.is_lost) {
       hypothesis.poses.push_back(hypothesis.track.pose());
     }
-    if (!any || hypothesis.evidence() > hypotheses_[best_].evidence()) {
-      outcome.registration = found[i];
-      best_ = i;
-    }
-    any = true;
-  }
-  return any;
+    hypothesis.track.updateMap(sweep);
+  });
+  return std::any_of(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& h) { return !h.is_lost; });
 }
 
-/// Those that match no more or have fallen behind, but for the best few. No direction of time is given up before it is
+/// Those that match no more or have fallen behind, but for the best few. No direction of time falls behind before it is
 /// settled how the sensor began to move.
 void Tracker::giveUpHopeless()
 {
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(), isLikelier);
-  const double hopeless = hypotheses_[0].evidence() - (is_open_ ? kHopeless : kWrongDirection);
   for (std::size_t i = hypotheses_.size(); i-- > 1;) {
     const auto here = hypotheses_.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto better = std::count_if(hypotheses_.begin(), here,
-                                      [&](const Hypothesis& other) { return other.direction() == here->direction(); });
-    const bool is_needless = here->evidence() < hopeless || better >= kMostHypotheses;
-    if (is_needless && (better > 0 || !is_open_)) {
+    const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == here->direction(); };
+    const auto best = is_open_ ? std::find_if(hypotheses_.begin(), here, isOfSameDirection) : hypotheses_.begin();
+    const double behind = is_open_ ? kHopeless : kWrongDirection;
+    if (here->is_lost || here->evidence() < best->evidence() - behind ||
+        std::count_if(hypotheses_.begin(), here, isOfSameDirection) >= kMostHypotheses) {
       hypotheses_.erase(here);
     }
   }
   best_ = 0;
 }
 
-/// The best hypotheses stay, their first sweeps where their last ones say they were.
+/// The best hypotheses stay, their first sweeps where their last ones say they were. Where a motion leaves no trace,
+/// none is as good as any.
 void Tracker::settle()
 {
   const bool is_told =
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
-  const bool is_open = !hypotheses_[best_].weak.empty() && !is_told;
+  const bool is_open = !hypotheses_[best_].last.report.weak_directions.empty() && !is_told;
   keepOneOfEachDirection(is_open ? hasMovedLess : isLikelier);
-  for (Hypothesis& hypothesis : hypotheses_) {
-    settle(hypothesis, is_open);
-  }
+  eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) { settle(hypotheses_[i], is_open); });
   kept_.clear();
 }
 
@@ -335,7 +329,7 @@ void Tracker::settle(Hypothesis& found, bool is_open) const
     }
   }
   if (is_open) {
-    found.track.forgetAlong(found.weak, static_cast<double>(kept_.size()));
+    found.track.forgetAlong(found.last.report.weak_directions, static_cast<double>(kept_.size()));
   }
 }
 

@@ -54,8 +54,9 @@ private:
   struct Hypothesis {
     Track track;
     std::vector<SweepPose> poses;
-    std::vector<WeakDirection> weak;  // of the last sweep
+    SurfaceRegistration last;
     bool is_lost = false;
+    std::size_t number = 0;
 
     [[nodiscard]] double direction() const { return track.settings().direction; }
     [[nodiscard]] double evidence() const;
@@ -73,14 +74,14 @@ private:
   void findFirstMotion(const Sweep& sweep, const TrackSettings& settings, Outcome& outcome);
   void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
-  bool stepAll(const Sweep& sweep, Outcome& outcome);
+  bool stepAll(const Sweep& sweep);
   void giveUpHopeless();
   void settle();
   void settle(Hypothesis& found, bool is_open) const;
   void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
   static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
   static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);
-  [[nodiscard]] std::vector<TrackSettings> directionsOf(const Sweep& sweep) const;
+  [[nodiscard]] std::vector<TrackSettings> directions(bool are_known) const;
 
   TrackSettings settings_;
   SpatialSampling sampling_;
@@ -90,6 +91,7 @@ private:
   int failed_ = 0;
   std::vector<Hypothesis> hypotheses_;
   std::size_t best_ = 0;
+  std::size_t numbered_ = 0;
   bool is_open_ = false;
   std::vector<Sweep> kept_;  // while open
 };

@@ -61,8 +61,8 @@ struct SurfaceRegistration {
   RegistrationReport report;
   Vector6 velocity = Vector6::Zero();     ///< per period, in the sensor's axes
   Matrix12 posterior = Matrix12::Zero();  ///< of pose and velocity, as the prior's
-  /// Log-likelihood of the points where the pose has them, over that of points that may be anywhere within a metre; and
-  /// how many more of those that tell of the open direction fit than do not.
+  /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
+  /// anywhere within a metre; and half of how many more of those that tell of the open direction fit than do not.
   double evidence = 0.0;
   std::size_t points = 0;  ///< that took part
 

@@ -167,14 +167,14 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
-/// \param told how much of the open direction the residual tells, in [0,1]: what does not tell of it (the road) has
-///             errors that many share, and is evidence with all of them; what does, by itself
+/// \param told how much of the open direction the residual tells, in [0,1]. What tells nothing of it (the road) fits
+///             wherever the sensor is supposed to be along it, by errors that many share; so what does counts for more.
 double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
                                 double told, SurfaceSums& sums) const
 {
   constexpr double kFits = 3.0;       // standard deviations
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
-  constexpr double kTelling = 0.5;    // of an independent residual: what one counts that tells of nothing else
+  constexpr double kTelling = 0.5;  // independent residuals that one counts as which tells of the open direction alone
   Eigen::Matrix<double, 6, 1> row;
   row << direction, p.arm.cross(direction);
   const double width = kKernelWidth * kKernelWidth * (variance + row.dot(reach * row));

@@ -44,7 +44,7 @@ private:
 
 TEST_P(UnknownTimes, AreToldByTheScans)
 {
-  constexpr std::size_t kScans = 50;
+  constexpr std::size_t sweeps = 50;
   SimulationOptions options;
   options.world = "room";
   options.seed = 41;
@@ -56,7 +56,8 @@ TEST_P(UnknownTimes, AreToldByTheScans)
   double told_off = 0.0;
   double untold_off = 0.0;
   ScanTimingSource source = ScanTimingSource::automatic;
-  for (std::size_t i = 0; i < kScans; ++i) {
+  ScanRotation rotation = ScanRotation::automatic;
+  for (std::size_t i = 0; i < sweeps; ++i) {
     const Sweep sweep = simulation.sweep(i);
     world_T_first = i == 0 ? sweep.world_T_end : world_T_first;
     const SE3 truth = world_T_first.inverse() * sweep.world_T_end;
@@ -64,7 +65,8 @@ TEST_P(UnknownTimes, AreToldByTheScans)
     const OdometryReport& report = untold.track(bare(sweep, random), sweep.start_time);
     EXPECT_EQ(report.state, i == 0 ? TrackingState::initialized : TrackingState::tracked) << i << report.reason;
     source = report.timing_source;
-    if (i >= kScans / 2) {
+    rotation = report.rotation;
+    if (i >= sweeps / 2) {
       told_off = std::max(told_off, (pose.translation - truth.translation).norm());
       untold_off = std::max(untold_off, (report.world_T_sensor.translation - seen(truth).translation).norm());
     }
@@ -72,6 +74,10 @@ TEST_P(UnknownTimes, AreToldByTheScans)
   RecordProperty("told_m", std::to_string(told_off));
   RecordProperty("untold_m", std::to_string(untold_off));
   EXPECT_EQ(source, GetParam() == TimeRuns::not_at_all ? ScanTimingSource::none : ScanTimingSource::azimuth);
+  if (GetParam() != TimeRuns::not_at_all) {
+    EXPECT_EQ(rotation,
+              GetParam() == TimeRuns::with_the_clock ? ScanRotation::clockwise : ScanRotation::counterclockwise);
+  }
   EXPECT_LT(untold_off, 1.5 * told_off + 0.005);
 }
 
@@ -82,5 +88,45 @@ INSTANTIATE_TEST_SUITE_P(All, UnknownTimes,
                                               : runs.param == TimeRuns::against_it   ? "againstIt"
                                                                                      : "notAtAll");
                          });
+
+/// Whatever was found of sweeps without times holds for those alone.
+TEST(TimesLostNowAndThen, CountWhereTheyAreThere)
+{
+  constexpr std::size_t half = 25;
+  for (const bool begins_with_times : {true, false}) {
+    SimulationOptions options;
+    options.world = "room";
+    options.seed = 42;
+    Simulation simulation(options);
+    std::mt19937 random(3);
+    Odometry<PointXYZIRT> odometry;
+    SE3 world_T_first;
+    double off = 0.0;
+    for (std::size_t i = 0; i < 2 * half; ++i) {
+      Sweep sweep = simulation.sweep(i);
+      const bool has_times = (i < half) == begins_with_times;
+      for (PointXYZIRT& point : sweep.cloud) {  // in a mirror, so that the head turns counterclockwise
+        point.y = -point.y;
+        point.time = has_times ? point.time : 0.0F;
+        point.ring = has_times ? point.ring : 0;
+      }
+      if (!has_times) {
+        std::shuffle(sweep.cloud.begin(), sweep.cloud.end(), random);
+      }
+      world_T_first = i == 0 ? sweep.world_T_end : world_T_first;
+      const Eigen::Vector3d truth = (world_T_first.inverse() * sweep.world_T_end).translation;
+      const OdometryReport& report = odometry.track(sweep.cloud, sweep.start_time);
+      if (has_times) {
+        EXPECT_EQ(report.timing_source, ScanTimingSource::time_field) << i;
+      } else if (begins_with_times) {
+        EXPECT_EQ(report.timing_source, ScanTimingSource::none) << i;
+      }
+      if (i >= 2 * half - 5) {
+        off = std::max(off, (report.world_T_sensor.translation - truth.cwiseProduct(Eigen::Vector3d(1, -1, 1))).norm());
+      }
+    }
+    EXPECT_LT(off, begins_with_times ? 0.15 : 0.03) << begins_with_times;  // a sweep's own motion is 0.1 m
+  }
+}
 
 }  // namespace pcl_floam::simulator

@@ -17,7 +17,7 @@ enum class ScanTimingSource : std::uint8_t {
   automatic,   ///< the time field, else the organised columns, else the azimuth
   time_field,  ///< a field `time`, `t`, `timestamp`, ...: s, ms, us or ns, relative or absolute
   columns,     ///< the columns of an organised cloud: one column is one firing
-  azimuth,     ///< the azimuth, with the direction of rotation measured from the firing order
+  azimuth,     ///< the azimuth, with the direction of rotation told by the firing order, or by \ref Odometry's poses
   none         ///< all points at the same instant: the scan is compensated already, or not rotating
 };
 

@@ -42,7 +42,8 @@ struct OdometryReport {
   /// first scan have turned out to be wrong, and this one jumps. Empty otherwise.
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
-  /// The first two scans did not tell how the sensor moved (fast, among traffic), and several motions are followed: the
+  /// The first two scans did not tell how the sensor moved (fast, among traffic; without times), and several tracks are
+  /// followed: the
   /// poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at the latest.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
@@ -64,11 +65,14 @@ struct OdometryReport {
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
+  /// Where nothing tells which way the head turned, it is the azimuth, or none, whichever explains the scans better (by
+  /// surfaces).
   ScanTimingSource timing_source = ScanTimingSource::none;
-  std::size_t points = 0;  ///< points in the scan
-  std::size_t edges = 0;   ///< edge features extracted
-  std::size_t planes = 0;  ///< plane features extracted
-  bool keyframe = false;   ///< the scan was added to the map
+  ScanRotation rotation = ScanRotation::automatic;  ///< of the head, where times are the azimuth's
+  std::size_t points = 0;                           ///< points in the scan
+  std::size_t edges = 0;                            ///< edge features extracted
+  std::size_t planes = 0;                           ///< plane features extracted
+  bool keyframe = false;                            ///< the scan was added to the map
   RegistrationReport registration;
   StageTimes milliseconds;
 };
