@@ -158,10 +158,11 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   }
   Outcome outcome;
   const std::vector<TrackSettings> all = directions(sweep.is_direction_known);
-  for (const TrackSettings& settings : all) {
-    Hypothesis hypothesis{Track(settings, side_), {}, {}, false, numbered_++};
-    hypothesis.last = hypothesis.track.begin(sweep, &settings == &all.back() ? std::move(map) : TrackMap(map),
-                                             prior.guess, prior.keeps_map);
+  std::vector<TrackMap> maps(all.size() - 1, map);
+  maps.push_back(std::move(map));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Hypothesis hypothesis{Track(all[i], side_), {}, {}, false, numbered_++};
+    hypothesis.last = hypothesis.track.begin(sweep, std::move(maps[i]), prior.guess, prior.keeps_map);
     if (hypotheses_.empty()) {
       outcome.registration = hypothesis.last;
     }
