@@ -90,7 +90,6 @@ void Tracker::keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const H
   }
   hypotheses_ = std::move(kept);
   is_open_ = false;
-  best_ = 0;
 }
 
 void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
@@ -121,7 +120,7 @@ Tracker::Outcome Tracker::step(const Sweep& sweep)
 void Tracker::updateMap(const Sweep& sweep)
 {
   if (isTracking()) {
-    hypotheses_[best_].track.updateMap(sweep);
+    hypotheses_.front().track.updateMap(sweep);
   }
 }
 
@@ -202,7 +201,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   is_open_ = true;
   giveUpHopeless();
   first_ = {};
-  outcome.registration = hypotheses_[best_].last;
+  outcome.registration = hypotheses_.front().last;
   outcome.corrected = true;
   return outcome;
 }
@@ -250,12 +249,12 @@ void Tracker::suppose(const SurfaceRegistration& found, Track track, Outcome& ou
 void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
 {
   if (!stepAll(sweep)) {
-    outcome.registration = hypotheses_[best_].last;
+    outcome.registration = hypotheses_.front().last;
     return;
   }
-  const std::size_t before = hypotheses_[best_].number;
+  const std::size_t before = hypotheses_.front().number;
   giveUpHopeless();
-  outcome.changed_track = hypotheses_[best_].number != before;
+  outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = is_open_ && outcome.changed_track;
   if (is_open_) {
     kept_.push_back(sweep);
@@ -264,7 +263,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
       outcome.corrected = true;
     }
   }
-  outcome.registration = hypotheses_[best_].last;
+  outcome.registration = hypotheses_.front().last;
   outcome.registration.report.target_T_source = track().pose().middle;
 }
 
@@ -298,7 +297,6 @@ void Tracker::giveUpHopeless()
       hypotheses_.erase(here);
     }
   }
-  best_ = 0;
 }
 
 /// The best hypotheses stay, their first sweeps where their last ones say they were. Where a motion leaves no trace,
@@ -307,13 +305,14 @@ void Tracker::settle()
 {
   const bool is_told =
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
-  const bool is_open = !hypotheses_[best_].last.report.weak_directions.empty() && !is_told;
-  keepOneOfEachDirection(is_open ? hasMovedLess : isLikelier);
-  eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) { settle(hypotheses_[i], is_open); });
+  const bool leaves_no_trace = !hypotheses_.front().last.report.weak_directions.empty() && !is_told;
+  keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
+  eachSideBySide(settings_.threads, hypotheses_.size(),
+                 [&](std::size_t i) { settle(hypotheses_[i], leaves_no_trace); });
   kept_.clear();
 }
 
-void Tracker::settle(Hypothesis& found, bool is_open) const
+void Tracker::settle(Hypothesis& found, bool leaves_no_trace) const
 {
   std::vector<SE3> forwards;
   for (const SweepPose& pose : found.poses) {
@@ -329,7 +328,7 @@ void Tracker::settle(Hypothesis& found, bool is_open) const
       found.poses.push_back({poses[i], found.track.fractionOf(kept_[i]) * velocity});
     }
   }
-  if (is_open) {
+  if (leaves_no_trace) {
     found.track.forgetAlong(found.last.report.weak_directions, static_cast<double>(kept_.size()));
   }
 }

@@ -46,9 +46,9 @@ public:
   [[nodiscard]] bool isOpen() const { return is_open_; }
   /// Whether several motions are followed.
   [[nodiscard]] bool isAmbiguous() const { return is_open_ && hypotheses_.size() > 1; }
-  [[nodiscard]] const Track& track() const { return hypotheses_[best_].track; }
+  [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
   /// Of the first sweeps, while \ref isOpen, right after, and as long as there are several tracks.
-  [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_[best_].poses; }
+  [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
 
 private:
   struct Hypothesis {
@@ -77,7 +77,7 @@ private:
   bool stepAll(const Sweep& sweep);
   void giveUpHopeless();
   void settle();
-  void settle(Hypothesis& found, bool is_open) const;
+  void settle(Hypothesis& found, bool leaves_no_trace) const;
   void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
   static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
   static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);
@@ -89,8 +89,7 @@ private:
   std::vector<PriorMap> prior_map_;  // none or one
   Sweep first_;
   int failed_ = 0;
-  std::vector<Hypothesis> hypotheses_;
-  std::size_t best_ = 0;
+  std::vector<Hypothesis> hypotheses_;  // the likeliest first
   std::size_t numbered_ = 0;
   bool is_open_ = false;
   std::vector<Sweep> kept_;  // while open

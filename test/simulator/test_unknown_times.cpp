@@ -10,10 +10,23 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <random>
 #include <string>
 
 namespace pcl_floam::simulator {
+
+namespace {
+
+SimulationOptions simulatedRoom(std::uint64_t seed)
+{
+  SimulationOptions options;
+  options.world = "room";
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace
 
 enum class TimeRuns { with_the_clock, against_it, not_at_all };
 
@@ -45,10 +58,7 @@ private:
 TEST_P(UnknownTimes, AreToldByTheScans)
 {
   constexpr std::size_t sweeps = 50;
-  SimulationOptions options;
-  options.world = "room";
-  options.seed = 41;
-  Simulation simulation(options);
+  Simulation simulation(simulatedRoom(41));
   std::mt19937 random(3);
   Odometry<PointXYZIRT> told;
   Odometry<pcl::PointXYZ> untold;
@@ -94,10 +104,7 @@ TEST(TimesLostNowAndThen, CountWhereTheyAreThere)
 {
   constexpr std::size_t half = 25;
   for (const bool begins_with_times : {true, false}) {
-    SimulationOptions options;
-    options.world = "room";
-    options.seed = 42;
-    Simulation simulation(options);
+    Simulation simulation(simulatedRoom(42));
     std::mt19937 random(3);
     Odometry<PointXYZIRT> odometry;
     SE3 world_T_first;

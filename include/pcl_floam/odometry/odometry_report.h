@@ -43,8 +43,8 @@ struct OdometryReport {
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// The first two scans did not tell how the sensor moved (fast, among traffic; without times), and several tracks are
-  /// followed: the
-  /// poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at the latest.
+  /// followed: the poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at
+  /// the latest.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
