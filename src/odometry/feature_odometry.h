@@ -241,7 +241,8 @@ struct FeatureOdometry : OdometryRun {
     if (scans_to_wait > 0) {
       --scans_to_wait;
     } else {
-      report.keyframe = map_building.add(cloud, scan, pose, parameters);
+      scan.takePoints(cloud, parameters);
+      report.keyframe = map_building.add(scan, pose, parameters);
     }
   }
 

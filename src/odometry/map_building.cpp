@@ -1,10 +1,12 @@
 #include "odometry/map_building.h"
 
-#include "odometry/scan_sample.h"
+#include "registration/sweep_points.h"
 
 #include <pcl_floam/filters/sweep_motion.h>
 
+#include <cstddef>
 #include <utility>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -15,6 +17,18 @@ constexpr double kMiddle = 0.5;
 SweepMotion motionDuring(const SweepPose& pose)
 {
   return SweepMotion(pose.twist, kMiddle, pose.acceleration);
+}
+
+std::vector<Eigen::Vector3f> undistorted(const std::vector<ScanPoint>& measured, const SweepPose& pose, int threads)
+{
+  const MovingSensor sensor(SE3(), pose.twist, pose.acceleration);
+  std::vector<Eigen::Vector3f> points(measured.size());
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(points.size()); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    points[i] = sensor.undistorted(measured[i]).cast<float>();
+  }
+  return points;
 }
 
 }  // namespace
@@ -60,16 +74,14 @@ bool MapBuilding::add(const FeatureSet& measured, const SweepPose& world_T_senso
 
 /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
 /// at only now and then.
-bool MapBuilding::add(const CloudView& cloud, const PreparedScan& scan, const SweepPose& world_T_sensor,
-                      const OdometryParameters& parameters)
+bool MapBuilding::add(const PreparedScan& scan, const SweepPose& world_T_sensor, const OdometryParameters& parameters)
 {
   constexpr int kKeyframesBetween = 7;
   const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
   if (is_keyframe) {
     if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
-      map_.forgetSeenThrough(undistortedSample(cloud, scan.lines, scan.timing, parameters.features,
-                                               parameters.vertical_correction, motionDuring(world_T_sensor)),
-                             world_T_sensor.middle, parameters.threads);
+      map_.forgetSeenThrough(undistorted(scan.points, world_T_sensor, parameters.threads), world_T_sensor.middle,
+                             parameters.threads);
     }
     insert(scan.features, world_T_sensor, parameters.threads);
   }

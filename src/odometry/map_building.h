@@ -5,7 +5,6 @@
 #include "motion/sweep_pose.h"
 #include "odometry/scan_preparation.h"
 
-#include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 #include <pcl_floam/odometry/odometry.h>
 #include <pcl_floam/odometry/odometry_parameters.h>
@@ -32,9 +31,8 @@ public:
   /// \return whether it did
   bool add(const FeatureSet& measured, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
 
-  /// The same with all that a scan tells: what it sees through has gone.
-  bool add(const CloudView& cloud, const PreparedScan& scan, const SweepPose& world_T_sensor,
-           const OdometryParameters& parameters);
+  /// The same with all that a scan tells: what its returns see through has gone.
+  bool add(const PreparedScan& scan, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
 
 private:
   [[nodiscard]] bool takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const;

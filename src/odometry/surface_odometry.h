@@ -46,7 +46,7 @@ struct SurfaceOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return predictOnly(toString(report.registration.termination));
     }
-    updateMap(cloud);
+    updateMap();
     finish(judge());
   }
 
@@ -191,12 +191,12 @@ struct SurfaceOdometry : OdometryRun {
     }
   }
 
-  void updateMap(const CloudView& cloud)
+  void updateMap()
   {
     const SweepPose world_T_sweep = inWorld(tracker.track().pose());
     sideBySide(
         parameters.threads, [&] { tracker.updateMap(sweep); },
-        [&] { report.keyframe = map_building.add(cloud, scan, world_T_sweep, parameters); });
+        [&] { report.keyframe = map_building.add(scan, world_T_sweep, parameters); });
     report.milliseconds.map += watch.lap();
   }
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam::test {
@@ -138,6 +139,43 @@ TEST_P(SeenThroughAnywhere, NeighboursAreFoundAsIfItHadNeverBeenThere)
       for (int i = 0; i < found.count; ++i) {
         EXPECT_FLOAT_EQ(found[i].squared_distance, expected[i].squared_distance);
       }
+    }
+  }
+}
+
+/// A pole before a wall all around.
+Points poleBeforeWall(float range, float radius, int lines)
+{
+  constexpr int kColumns = 1800;
+  Points points;
+  for (int column = 0; column < kColumns; ++column) {
+    const float azimuth = kHalfTurn * (2.0F * static_cast<float>(column) / kColumns - 1.0F);
+    const float met = std::abs(azimuth - 0.3F) < radius / range ? range : 60.0F;
+    for (int line = 0; line < lines; ++line) {
+      const float slope = -0.2F + 0.4F * static_cast<float>(line) / static_cast<float>(lines);
+      points.emplace_back(met * std::cos(azimuth), met * std::sin(azimuth), met * slope);
+    }
+  }
+  return points;
+}
+
+TEST(SeenThrough, TheVeryScanThatMadeTheMapSeesThroughNoneOfIt)
+{
+  for (const int lines : {16, 64, 128}) {
+    for (const auto& [range, radius] : {std::pair(8.0F, 0.1F), {15.0F, 0.05F}, {25.0F, 0.05F}, {35.0F, 0.1F}}) {
+      const Points scan = poleBeforeWall(range, radius, lines);
+      FeatureSet pole;
+      for (const Eigen::Vector3f& point : scan) {
+        if (point.head<2>().norm() < 50.0F) {
+          pole.edges.push_back(featuresAt({point}).edges.front());
+        }
+      }
+      KeyframeVoxelMap map;
+      map.insert(pole, SE3());
+      const std::size_t before = map.size(FeatureKind::edge);
+      ASSERT_GT(before, 5U);
+      map.forgetSeenThrough(scan, SE3());
+      EXPECT_EQ(map.size(FeatureKind::edge), before) << lines << " lines, pole at " << range;
     }
   }
 }

@@ -80,9 +80,11 @@ struct DriveAmongObjects {
 class MovingObjects : public testing::TestWithParam<DriveAmongObjects> {};
 
 INSTANTIATE_TEST_SUITE_P(Worlds, MovingObjects,
-                         testing::Values(DriveAmongObjects{"urban", "hdl64", 5.0, 100, 0.5},
+                         testing::Values(DriveAmongObjects{"urban", "hdl64", 5.0, 100, 0.4},
                                          DriveAmongObjects{"urban", "vlp16", 5.0, 200, 0.6},
-                                         DriveAmongObjects{"warehouse", "vlp16", 0.0, 300, 0.7}),
+                                         DriveAmongObjects{"warehouse", "vlp16", 0.0, 300, 0.6},
+                                         DriveAmongObjects{"urban", "hap", 5.0, 100, 0.4},
+                                         DriveAmongObjects{"warehouse", "mid360", 0.0, 300, 0.6}),
                          [](const auto& parameter) {
                            return std::string(parameter.param.world) + "_" + parameter.param.sensor;
                          });
