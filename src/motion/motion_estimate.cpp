@@ -15,15 +15,15 @@ using Block6 = Eigen::Matrix<double, 6, 6>;
 /// turns the sensor.
 constexpr double kFirstTranslation = 0.3;
 constexpr double kFirstRotation = 0.15;
-/// By how much a prediction over one period is off, m and rad, per coordinate: 2 m/s^2 and 60 degrees/s^2 at ten
-/// sweeps a second. What a car's acceleration may be is not learned: on an open road it is hardly seen, and nobody must
-/// come to believe that there is none.
+/// By how much a prediction over one period is off, m and rad, per coordinate, where nothing is known of it: 2 m/s^2
+/// and 60 degrees/s^2 at ten sweeps a second. Where the sensor cannot be seen to move it stays so: nobody must come to
+/// believe that a car on an open road does not accelerate.
 constexpr double kTranslation = 0.02;
 constexpr double kRotation = 0.01;
-/// Of turns, which every scan tells well, late predictions say more: they are off by so many times as much as the late
-/// ones in the mean, and at least by what a pose is.
-constexpr double kTimesLate = 4.0;  // squared
-constexpr double kMemory = 10.0;    // predictions
+/// Otherwise half as much again as late ones were in the mean, or as the very last one; at least by what a pose is.
+constexpr double kTimesLate = 1.5;
+constexpr double kMemory = 10.0;  // predictions
+constexpr double kLeastTranslation = 0.0005;
 constexpr double kLeastRotation = 0.0005;
 /// With exact poses the variance of a prediction over one period is so many times the density: 1/3 of it for the
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
@@ -51,8 +51,10 @@ Square12 turnedBoth(const Eigen::Matrix3d& rotation)
 }  // namespace
 
 MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity)
-    : pose_(world_T_sensor), velocity_(velocity), turn_error_(kRotation * kRotation)
+    : pose_(world_T_sensor), velocity_(velocity)
 {
+  late_errors_ << Eigen::Vector3d::Constant(kTranslation * kTranslation),
+      Eigen::Vector3d::Constant(kRotation * kRotation);
   for (int i = 0; i < 6; ++i) {
     const double first = i < 3 ? kFirstTranslation : kFirstRotation;
     covariance_(6 + i, 6 + i) = first * first;
@@ -97,8 +99,7 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
   const Block6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
   growth.noise.topLeftCorner<6, 6>() += periods_error * periods_error * squared_motion;
   covariance_ = growth.of(was);
-  periods_ = periods_error > 0.0 ? 0.0 : periods;
-  expected_rotation_ = pose_.rotation;
+  periods_ = periods_error > 0.0 || hint ? 0.0 : periods;
   if (hint) {
     take(*hint, before, was, growth);
   }
@@ -114,7 +115,7 @@ void MotionEstimate::advance(double periods, Growth& growth)
   f.topRightCorner<6, 6>() = periods * Block6::Identity();
   Square12 q = Square12::Zero();
   for (int i = 0; i < 6; ++i) {
-    const double density = (i < 3 ? kTranslation * kTranslation : turn_error_) / kPerDensity;
+    const double density = late_errors_[i] / kPerDensity;
     q(i, i) = density * periods * periods * periods / 3.0;
     q(i, 6 + i) = q(6 + i, i) = density * periods * periods / 2.0;
     q(6 + i, 6 + i) = density * periods;
@@ -155,12 +156,21 @@ MotionEstimate::Matrix12 MotionEstimate::covariance() const
   return r * covariance_ * r.transpose();
 }
 
-void MotionEstimate::learnFrom(const SE3& world_T_sensor)
+/// \param innovation what was measured against the prediction, as a perturbation of the pose
+/// \param told       how much of it the measurement says against what was known, in [0,1]
+void MotionEstimate::learnFrom(const Vector6& innovation, const Vector6& told)
 {
+  constexpr double kHardly = 0.05;
   if (periods_ > 0.0) {
-    const double error = logSO3(expected_rotation_.transpose() * world_T_sensor.rotation).squaredNorm() / 3.0;
-    turn_error_ += (kTimesLate * error / std::max(1.0, periods_ * periods_) - turn_error_) / kMemory;
-    turn_error_ = std::max(turn_error_, kLeastRotation * kLeastRotation);
+    const double over = std::max(1.0, periods_);
+    for (int i = 0; i < 6; ++i) {
+      const double usual = i < 3 ? kTranslation : kRotation;
+      const double least = i < 3 ? kLeastTranslation : kLeastRotation;
+      const double error = told[i] > kHardly ? kTimesLate * std::abs(innovation[i]) / over : usual;
+      const double squared = i < 3 ? std::min(error * error, usual * usual) : error * error;
+      late_errors_[i] += (squared - late_errors_[i]) / kMemory;
+      late_errors_[i] = std::max({late_errors_[i], squared, least * least});
+    }
   }
   periods_ = 0.0;
 }
@@ -168,7 +178,6 @@ void MotionEstimate::learnFrom(const SE3& world_T_sensor)
 /// Kalman's filter; the covariance in Joseph's form, which stays positive.
 void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covariance)
 {
-  learnFrom(world_T_sensor);
   Vector6 error;
   error.head<3>() = pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation);
   error.tail<3>() = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
@@ -176,6 +185,7 @@ void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covarianc
   const Square12 p = covariance_;
   const Block6 noise = r * covariance * r.transpose();
   const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise;
+  learnFrom(error, p.diagonal().head<6>().cwiseQuotient(innovation.diagonal()));
   const Eigen::Matrix<double, 12, 6> gain =
       innovation.ldlt().solve(Eigen::Matrix<double, 6, 12>(p.topRows<6>())).transpose();
   shift(gain * error);
@@ -186,12 +196,18 @@ void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covarianc
 
 void MotionEstimate::update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance)
 {
-  learnFrom(world_T_sensor);
-  pose_ = world_T_sensor;
-  pose_.rotation = nearestRotation(pose_.rotation);
+  constexpr double kNothing = 1e-9;
+  const Eigen::Matrix3d turned_back = nearestRotation(world_T_sensor.rotation).transpose();
+  const Square12 r = turnedBoth(turned_back);
+  const Square12 known = r * covariance * r.transpose();
+  const Vector6 told = (1.0 - known.diagonal().head<6>().array() / covariance_.diagonal().head<6>().array()).matrix();
+  Vector6 off;
+  off << pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation),
+      logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
+  learnFrom(off.cwiseQuotient(told.cwiseMax(kNothing)), told);
+  pose_ = {turned_back.transpose(), world_T_sensor.translation};
   velocity_ = velocity;
-  const Square12 r = turnedBoth(pose_.rotation).transpose();
-  covariance_ = r * covariance * r.transpose();
+  covariance_ = known;
 }
 
 }  // namespace pcl_floam

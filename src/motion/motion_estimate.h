@@ -67,14 +67,13 @@ private:
   void advance(double periods, Growth& growth);
   void take(const MotionHint& hint, const SE3& before, const Matrix12& was, const Growth& growth);
   void shift(const Eigen::Matrix<double, 12, 1>& change);
-  void learnFrom(const SE3& world_T_sensor);
+  void learnFrom(const Vector6& innovation, const Vector6& told);
 
   SE3 pose_;
   Vector6 velocity_ = Vector6::Zero();
   Matrix12 covariance_ = Matrix12::Zero();
   double periods_ = 0.0;  ///< of the last prediction; 0: it tells nothing of how restless the sensor is
-  Eigen::Matrix3d expected_rotation_ = Eigen::Matrix3d::Identity();  ///< then, by the velocity alone
-  double turn_error_;  ///< rad^2 per coordinate, squared error of a prediction over one period: the mean of late
+  Vector6 late_errors_;   ///< m^2 and rad^2 per coordinate, of predictions over one period: squared, the mean of late
 };
 
 }  // namespace pcl_floam
