@@ -44,6 +44,9 @@ public:
   /// \param periods_error one standard deviation
   void predict(double periods, const std::optional<MotionHint>& hint = std::nullopt, double periods_error = 0.0);
 
+  /// The last prediction's error tells nothing of how restless the sensor is.
+  void learnNothing() { periods_ = 0.0; }
+
   /// Takes in a measured pose.
   /// \param covariance of its errors, as \ref poseCovariance
   void correct(const SE3& world_T_sensor, const Matrix6& covariance);

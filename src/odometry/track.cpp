@@ -116,6 +116,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   if (found.report.hasConverged()) {
     map_.emplace(side_, settings_.horizon);
     map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
+    motion_.learnNothing();  // it was supposed, not predicted
     update(second, found);
     updateMap(second);
   }
