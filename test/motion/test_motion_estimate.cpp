@@ -10,6 +10,7 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -111,21 +112,63 @@ TEST(MotionEstimate, CovarianceTurnsWithTheSensor)
   EXPECT_LT(motion.poseCovariance()(1, 1), 1e-6);
 }
 
-TEST(MotionEstimate, TurnsAreExpectedToBeAsRestlessAsTheyWere)
+/// How far the next prediction may be off in y and about z, after a restless while.
+std::pair<double, double> spreadAfter(double translation, double rotation)
 {
-  const auto spreadAfter = [](double restlessness) {
-    std::mt19937 random(8);
-    MotionEstimate motion;
-    for (int i = 0; i < 150; ++i) {
-      motion.predict(1.0);
-      motion.correct(exp(test::randomTwist(random, 1e-6, restlessness)), kExact * Matrix6(Matrix6::Identity()));
-    }
+  std::mt19937 random(8);
+  MotionEstimate motion;
+  for (int i = 0; i < 150; ++i) {
     motion.predict(1.0);
-    return std::sqrt(motion.poseCovariance()(5, 5));
-  };
-  const double calm = spreadAfter(0.002);
-  EXPECT_NEAR(spreadAfter(0.02) / calm, 10.0, 0.5);
-  EXPECT_GT(calm, 0.001) << "no less than it was";
+    motion.correct(exp(test::randomTwist(random, translation, rotation)), kExact * Matrix6(Matrix6::Identity()));
+  }
+  motion.predict(1.0);
+  return {std::sqrt(motion.poseCovariance()(1, 1)), std::sqrt(motion.poseCovariance()(5, 5))};
+}
+
+TEST(MotionEstimate, IsExpectedToBeAsRestlessAsItWas)
+{
+  const auto [shift, turn] = spreadAfter(0.002, 0.002);
+  EXPECT_NEAR(spreadAfter(0.0, 0.02).second / turn, 10.0, 0.5);
+  EXPECT_NEAR(spreadAfter(0.001, 0.0).first / shift, 0.5, 0.05);
+  EXPECT_GT(turn, 0.001) << "no less than it was";
+  EXPECT_GT(shift, 0.001);
+}
+
+TEST(MotionEstimate, AShiftFromRestIsExpectedFromTheNextScanOn)
+{
+  constexpr double kShift = 0.02;  // m
+  MotionEstimate motion = afterSteps(Vector6::Zero(), 200);
+  motion.predict(1.0);
+  EXPECT_LT(motion.poseCovariance()(0, 0), 1e-6) << "it has been resting";
+  motion.correct(SE3(Eigen::Matrix3d::Identity(), {kShift, 0.0, 0.0}), kExact * Matrix6(Matrix6::Identity()));
+  motion.predict(1.0);
+  EXPECT_GT(std::sqrt(motion.poseCovariance()(0, 0)), 0.5 * kShift);
+  EXPECT_LT(motion.poseCovariance()(1, 1), 1e-6) << "that was along x";
+}
+
+/// On an open road hardly anything tells of the way along: that is no sign of rest.
+TEST(MotionEstimate, WhereAScanTellsNothingNothingIsLearned)
+{
+  constexpr double kNothing = 1e4;  // m^2
+  Matrix6 all_but_x = kExact * Matrix6(Matrix6::Identity());
+  all_but_x(0, 0) = kNothing;
+  MotionEstimate corrected;
+  MotionEstimate updated;
+  for (int i = 0; i < 200; ++i) {
+    corrected.predict(1.0);
+    corrected.correct(SE3(), all_but_x);
+    updated.predict(1.0);
+    MotionEstimate::Matrix12 posterior = updated.covariance();
+    posterior.bottomRows<11>().setZero();  // all but x is known
+    posterior.rightCols<11>().setZero();
+    updated.update(SE3(), Vector6::Zero(), posterior);
+  }
+  for (MotionEstimate* motion : {&corrected, &updated}) {
+    motion->place(SE3(), Matrix6(Matrix6::Zero()));
+    motion->predict(1.0);
+    EXPECT_GT(std::sqrt(motion->poseCovariance()(0, 0)), 0.01);
+    EXPECT_LT(std::sqrt(motion->poseCovariance()(1, 1)), 0.005);
+  }
 }
 
 /// A scan whose stamp does not advance may be of the last one's instant or of a later one.
