@@ -122,7 +122,7 @@ struct SurfaceOdometry : OdometryRun {
   void estimatePose()
   {
     constexpr double kShortest = 1e-3;  // periods: stamps that do not advance
-    const bool was_open = tracker.isOpen() || !tracker.isTracking();
+    const bool may_correct = tracker.mayCorrect() || !tracker.isTracking();
     sweep.periods = std::max(periods, kShortest);
     const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
@@ -132,7 +132,7 @@ struct SurfaceOdometry : OdometryRun {
       return;
     }
     reachScan();
-    if (was_open && !map_building.hasPrior()) {
+    if (may_correct && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
       first_poses.add();
     }
@@ -233,7 +233,7 @@ struct SurfaceOdometry : OdometryRun {
       report.covariance = report.registration.covariance;
     }
     first_poses.give(report.world_T_sensor);
-    if (tracker.isTracking() && !tracker.isOpen()) {
+    if (tracker.isTracking() && !tracker.mayCorrect()) {
       first_poses.close();
       first_scans.clear();
     }

@@ -27,6 +27,9 @@ constexpr double kHopeless = 200.0;
 /// which nothing else differs.
 constexpr double kWrongDirection = 30.0;
 
+/// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.
+constexpr std::size_t kMostCorrected = 2 * kFirstSweeps;
+
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostHypotheses = 4;
 
@@ -66,6 +69,7 @@ void Tracker::place(const SE3& pose)
   if (isTracking()) {
     keepOneOfEachDirection(isLikelier);
     kept_.clear();
+    may_correct_ = false;
   }
   for (Hypothesis& hypothesis : hypotheses_) {
     hypothesis.track.place(pose);
@@ -198,7 +202,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
     return outcome;
   }
   kept_ = {first_, sweep};
-  is_open_ = true;
+  is_open_ = may_correct_ = true;
   giveUpHopeless();
   first_ = {};
   outcome.registration = hypotheses_.front().last;
@@ -255,7 +259,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
   const std::size_t before = hypotheses_.front().number;
   giveUpHopeless();
   outcome.changed_track = hypotheses_.front().number != before;
-  outcome.corrected = is_open_ && outcome.changed_track;
+  outcome.corrected = may_correct_ && outcome.changed_track;
   if (is_open_) {
     kept_.push_back(sweep);
     if (kept_.size() == kFirstSweeps) {
@@ -263,6 +267,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
       outcome.corrected = true;
     }
   }
+  may_correct_ = is_open_ || (isAmbiguous() && poses().size() < kMostCorrected);
   outcome.registration = hypotheses_.front().last;
   outcome.registration.report.target_T_source = track().pose().middle;
 }
@@ -274,7 +279,7 @@ bool Tracker::stepAll(const Sweep& sweep)
     Hypothesis& hypothesis = hypotheses_[i];
     hypothesis.last = hypothesis.track.step(sweep, is_open_ ? Rivals::motions : Rivals::directions);
     hypothesis.is_lost = !hypothesis.last.report.hasConverged();
-    if (is_open_ && !hypothesis.is_lost) {
+    if (may_correct_ && !hypothesis.is_lost) {
       hypothesis.poses.push_back(hypothesis.track.pose());
     }
     hypothesis.track.updateMap(sweep);

@@ -42,12 +42,15 @@ public:
   [[nodiscard]] bool hasBegun() const { return !first_.sample.empty() || !hypotheses_.empty(); }
   /// Whether a motion is known.
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
-  /// Whether the first poses may yet be corrected.
+  /// Whether it is not decided yet how the sensor began to move.
   [[nodiscard]] bool isOpen() const { return is_open_; }
-  /// Whether several motions are followed.
-  [[nodiscard]] bool isAmbiguous() const { return is_open_ && hypotheses_.size() > 1; }
+  /// Whether the poses since the first one may yet be corrected.
+  [[nodiscard]] bool mayCorrect() const { return may_correct_; }
+  /// Whether they may since several motions are followed.
+  [[nodiscard]] bool isAmbiguous() const { return may_correct_ && hypotheses_.size() > 1; }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
-  /// Of the first sweeps, while \ref isOpen, right after, and as long as there are several tracks.
+  /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
+  /// several tracks.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
 
 private:
@@ -92,6 +95,7 @@ private:
   std::vector<Hypothesis> hypotheses_;  // the likeliest first
   std::size_t numbered_ = 0;
   bool is_open_ = false;
+  bool may_correct_ = false;
   std::vector<Sweep> kept_;  // while open
 };
 
