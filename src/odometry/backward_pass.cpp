@@ -30,7 +30,7 @@ std::vector<SE3> posesFoundBackwards(const std::vector<Sweep>& kept, const std::
     sweeps.push_back(backwards(kept, k));
   }
   Track back(settings, side);
-  back.begin(sweeps, last);
+  back.begin(sweeps, last, keyframesAmong(last, side));
   for (std::size_t k = n - kTrusted; k-- > 0;) {
     const Sweep sweep = backwards(kept, k);
     if (!back.step(sweep).report.hasConverged()) {

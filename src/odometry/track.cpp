@@ -20,6 +20,12 @@ constexpr double kGivenTurned = 0.25;
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
 
+bool isFar(const SE3& keyframe, const SE3& pose, double side)
+{
+  const SE3 moved = keyframe.inverse() * pose;
+  return moved.translation.norm() > kKeyframeSides * side || rotationAngle(moved.rotation) > kKeyframeTurn;
+}
+
 Matrix6 covarianceOf(double translation, double rotation)
 {
   Vector6 variance;
@@ -123,7 +129,18 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   return found;
 }
 
-void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses)
+std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, double side)
+{
+  std::vector<bool> keyframes;
+  SE3 last;
+  for (const SE3& pose : poses) {
+    keyframes.push_back(keyframes.empty() || isFar(last, pose, side));
+    last = keyframes.back() ? pose : last;
+  }
+  return keyframes;
+}
+
+void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
 {
   constexpr double kKnown = 0.01;  // m and rad
   map_.emplace(side_, settings_.horizon);
@@ -139,7 +156,7 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
       motion_.predict(sweeps[i].periods);
       motion_.correct(poses[i], covarianceOf(kKnown, kKnown));
     }
-    if (i == 0 || isKeyframe()) {
+    if (keyframes[i]) {
       map_->insert(sweeps[i], pose_);
       keyframe_ = poses[i];
     }
@@ -335,24 +352,18 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isKeyframe();
+  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isFar(keyframe_, pose_.middle, side_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }
 
 /// Mapping Building.
-void Track::updateMap(const Sweep& sweep)
+void Track::updateMap(const Sweep& sweep, bool takes_it)
 {
-  if (is_keyframe_) {
+  if (takes_it) {
     map_->insert(sweep, pose_);
     keyframe_ = pose_.middle;
-    is_keyframe_ = false;
   }
-}
-
-bool Track::isKeyframe() const
-{
-  const SE3 moved = keyframe_.inverse() * pose_.middle;
-  return moved.translation.norm() > kKeyframeSides * side_ || rotationAngle(moved.rotation) > kKeyframeTurn;
+  is_keyframe_ = false;
 }
 
 }  // namespace pcl_floam

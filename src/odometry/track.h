@@ -36,6 +36,9 @@ struct FirstLook {
   int rounds = 1;                      ///< each looks half as far as the one before
 };
 
+/// Those of some poses, in the order of time, at which a map with finest cells of that side takes in the sweeps.
+[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, double side);
+
 /// Predict, register, judge, update.
 class Track {
 public:
@@ -55,7 +58,8 @@ public:
   SurfaceRegistration begin(const Sweep& first, const Sweep& second, const FirstLook& look);
 
   /// Begins with sweeps whose poses are known, in the order of time.
-  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses);
+  /// \param keyframes of which the map is made
+  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
 
   /// Begins in a map that was made before, of which the pose is roughly known.
   SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);
@@ -64,8 +68,12 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
+  /// Whether the last sweep is one that the map should take in.
+  [[nodiscard]] bool isKeyframe() const { return is_keyframe_; }
   /// The map takes in the last sweep, if that is a keyframe.
-  void updateMap(const Sweep& sweep);
+  void updateMap(const Sweep& sweep) { updateMap(sweep, is_keyframe_); }
+  /// The map takes in the last sweep, if somebody wants it to.
+  void updateMap(const Sweep& sweep, bool takes_it);
 
   /// The next sweep is sought around here.
   void place(const SE3& pose);
@@ -94,7 +102,6 @@ private:
   SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;
   void judge(const SurfaceRegistration& registration);
   void update(const Sweep& sweep, const SurfaceRegistration& registration);
-  [[nodiscard]] bool isKeyframe() const;
 
   TrackSettings settings_;
   double side_;

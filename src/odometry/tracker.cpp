@@ -24,14 +24,23 @@ constexpr std::size_t kFirstSweeps = 12;
 constexpr double kHopeless = 200.0;
 
 /// The same of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or so, in
-/// which nothing else differs.
-constexpr double kWrongDirection = 30.0;
+/// which nothing else differs, maps included.
+constexpr double kWrongDirection = 15.0;
 
 /// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.
 constexpr std::size_t kMostCorrected = 2 * kFirstSweeps;
 
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostHypotheses = 4;
+
+std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
+{
+  std::vector<SE3> middles;
+  for (const SweepPose& pose : poses) {
+    middles.push_back(pose.middle);
+  }
+  return middles;
+}
 
 }  // namespace
 
@@ -282,9 +291,20 @@ bool Tracker::stepAll(const Sweep& sweep)
     if (may_correct_ && !hypothesis.is_lost) {
       hypothesis.poses.push_back(hypothesis.track.pose());
     }
-    hypothesis.track.updateMap(sweep);
+    if (is_open_) {
+      hypothesis.track.updateMap(sweep);
+    }
   });
-  return std::any_of(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& h) { return !h.is_lost; });
+  const auto goes_on =
+      std::find_if(hypotheses_.begin(), hypotheses_.end(), [](const Hypothesis& h) { return !h.is_lost; });
+  if (!is_open_ && goes_on != hypotheses_.end()) {
+    // A map that has just taken in a sweep explains the next one better, whatever is right: so all take in the same.
+    const bool is_keyframe = goes_on->track.isKeyframe();
+    eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
+      hypotheses_[i].track.updateMap(sweep, is_keyframe && !hypotheses_[i].is_lost);
+    });
+  }
+  return goes_on != hypotheses_.end();
 }
 
 /// Those that match no more or have fallen behind, but for the best few. No direction of time falls behind before it is
@@ -312,20 +332,22 @@ void Tracker::settle()
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
   const bool leaves_no_trace = !hypotheses_.front().last.report.weak_directions.empty() && !is_told;
   keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
+  std::vector<std::vector<SE3>> poses(hypotheses_.size());
+  eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
+    poses[i] = posesFoundBackwards(kept_, middlesOf(hypotheses_[i].poses), hypotheses_[i].track.settings(), side_);
+  });
+  const std::vector<bool> keyframes =
+      keyframesAmong(poses[0].empty() ? middlesOf(hypotheses_[0].poses) : poses[0], side_);
   eachSideBySide(settings_.threads, hypotheses_.size(),
-                 [&](std::size_t i) { settle(hypotheses_[i], leaves_no_trace); });
+                 [&](std::size_t i) { settle(hypotheses_[i], poses[i], keyframes, leaves_no_trace); });
   kept_.clear();
 }
 
-void Tracker::settle(Hypothesis& found, bool leaves_no_trace) const
+void Tracker::settle(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
+                     bool leaves_no_trace) const
 {
-  std::vector<SE3> forwards;
-  for (const SweepPose& pose : found.poses) {
-    forwards.push_back(pose.middle);
-  }
-  const std::vector<SE3> poses = posesFoundBackwards(kept_, forwards, found.track.settings(), side_);
   if (!poses.empty()) {
-    found.track.begin(kept_, poses);
+    found.track.begin(kept_, poses, keyframes);
     found.poses.clear();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::size_t next = std::max<std::size_t>(i, 1);

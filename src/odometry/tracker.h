@@ -80,7 +80,8 @@ private:
   bool stepAll(const Sweep& sweep);
   void giveUpHopeless();
   void settle();
-  void settle(Hypothesis& found, bool leaves_no_trace) const;
+  void settle(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
+              bool leaves_no_trace) const;
   void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
   static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
   static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);

@@ -104,7 +104,7 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   sweeps.pop_back();
   poses.pop_back();
   Track track({}, side);
-  track.begin(sweeps, poses);
+  track.begin(sweeps, poses, keyframesAmong(poses, side));
   EXPECT_TRUE(track.step(last).report.hasConverged());
   EXPECT_LT(error(track.pose().middle, 4), 0.01);
 
@@ -114,7 +114,7 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   for (Sweep& sweep : reversed) {
     sweep.fraction = -sweep.fraction;
   }
-  back.begin(reversed, {path(0.5).inverse() * path(4.5), poses[3]});
+  back.begin(reversed, {path(0.5).inverse() * path(4.5), poses[3]}, {true, true});
   Sweep before = sweeps[2];
   before.fraction = -before.fraction;
   EXPECT_TRUE(back.step(before).report.hasConverged());

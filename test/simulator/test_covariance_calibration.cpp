@@ -41,7 +41,7 @@ protected:
       pcl_floam::Sweep sweep = sampled(simulated);
       if (i >= kMapped && (i - kMapped) % kBetween == 0) {
         Track track({}, side_);
-        track.begin(sweeps, poses);
+        track.begin(sweeps, poses, keyframesAmong(poses, side_));
         judge(track.step(sweep).report, simulated.world_T_middle);
       }
       sweeps.push_back(std::move(sweep));

@@ -18,10 +18,10 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-SimulationOptions simulatedRoom(std::uint64_t seed)
+SimulationOptions simulated(const std::string& world, std::uint64_t seed)
 {
   SimulationOptions options;
-  options.world = "room";
+  options.world = world;
   options.seed = seed;
   return options;
 }
@@ -30,14 +30,20 @@ SimulationOptions simulatedRoom(std::uint64_t seed)
 
 enum class TimeRuns { with_the_clock, against_it, not_at_all };
 
-class UnknownTimes : public testing::TestWithParam<TimeRuns> {
+struct Untold {
+  TimeRuns runs;
+  const char* world;
+  std::uint64_t seed;
+};
+
+class UnknownTimes : public testing::TestWithParam<Untold> {
 protected:
   static pcl::PointCloud<pcl::PointXYZ> bare(const Sweep& sweep, std::mt19937& random)
   {
     pcl::PointCloud<pcl::PointXYZ> cloud;
     for (std::size_t i = 0; i < sweep.cloud.size(); ++i) {
-      const Eigen::Vector3f place =
-          GetParam() == TimeRuns::not_at_all ? Eigen::Vector3f(sweep.exact_at_end[i]) : sweep.cloud[i].getVector3fMap();
+      const Eigen::Vector3f place = GetParam().runs == TimeRuns::not_at_all ? Eigen::Vector3f(sweep.exact_at_end[i])
+                                                                            : sweep.cloud[i].getVector3fMap();
       cloud.emplace_back(place.x(), mirror() * place.y(), place.z());
     }
     std::shuffle(cloud.begin(), cloud.end(), random);
@@ -52,13 +58,13 @@ protected:
   }
 
 private:
-  static float mirror() { return GetParam() == TimeRuns::against_it ? -1.0F : 1.0F; }
+  static float mirror() { return GetParam().runs == TimeRuns::against_it ? -1.0F : 1.0F; }
 };
 
 TEST_P(UnknownTimes, AreToldByTheScans)
 {
   constexpr std::size_t sweeps = 50;
-  Simulation simulation(simulatedRoom(41));
+  Simulation simulation(simulated(GetParam().world, GetParam().seed));
   std::mt19937 random(3);
   Odometry<PointXYZIRT> told;
   Odometry<pcl::PointXYZ> untold;
@@ -83,20 +89,24 @@ TEST_P(UnknownTimes, AreToldByTheScans)
   }
   RecordProperty("told_m", std::to_string(told_off));
   RecordProperty("untold_m", std::to_string(untold_off));
-  EXPECT_EQ(source, GetParam() == TimeRuns::not_at_all ? ScanTimingSource::none : ScanTimingSource::azimuth);
-  if (GetParam() != TimeRuns::not_at_all) {
+  EXPECT_EQ(source, GetParam().runs == TimeRuns::not_at_all ? ScanTimingSource::none : ScanTimingSource::azimuth);
+  if (GetParam().runs != TimeRuns::not_at_all) {
     EXPECT_EQ(rotation,
-              GetParam() == TimeRuns::with_the_clock ? ScanRotation::clockwise : ScanRotation::counterclockwise);
+              GetParam().runs == TimeRuns::with_the_clock ? ScanRotation::clockwise : ScanRotation::counterclockwise);
   }
   EXPECT_LT(untold_off, 1.5 * told_off + 0.005);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, UnknownTimes,
-                         testing::Values(TimeRuns::with_the_clock, TimeRuns::against_it, TimeRuns::not_at_all),
-                         [](const auto& runs) {
-                           return std::string(runs.param == TimeRuns::with_the_clock ? "withTheClock"
-                                              : runs.param == TimeRuns::against_it   ? "againstIt"
-                                                                                     : "notAtAll");
+                         testing::Values(Untold{TimeRuns::with_the_clock, "room", 41},
+                                         Untold{TimeRuns::against_it, "room", 41},
+                                         Untold{TimeRuns::not_at_all, "room", 41},
+                                         Untold{TimeRuns::with_the_clock, "warehouse", 41}),
+                         [](const auto& untold) {
+                           const TimeRuns runs = untold.param.runs;
+                           return untold.param.world + std::string(runs == TimeRuns::with_the_clock ? "WithTheClock"
+                                                                   : runs == TimeRuns::against_it   ? "AgainstIt"
+                                                                                                    : "NotAtAll");
                          });
 
 /// Whatever was found of sweeps without times holds for those alone.
@@ -104,7 +114,7 @@ TEST(TimesLostNowAndThen, CountWhereTheyAreThere)
 {
   constexpr std::size_t half = 25;
   for (const bool begins_with_times : {true, false}) {
-    Simulation simulation(simulatedRoom(42));
+    Simulation simulation(simulated("room", 42));
     std::mt19937 random(3);
     Odometry<PointXYZIRT> odometry;
     SE3 world_T_first;
