@@ -15,17 +15,19 @@ namespace pcl_floam::tools {
 /// True poses by the number of the scan in its folder.
 class GroundTruth {
 public:
-  /// A file with as many poses as the folder has scans gives one to each; else it must be TUM and the scans must have
-  /// times, by which the poses are then found.
+  /// By their times, if the file is TUM and the scans have times that it spans; else it must have as many poses as
+  /// there are scans.
   /// \param calibration KITTI's calib.txt if the poses are the camera's, else empty
   /// \throws FileError if a file cannot be read or the poses cannot be assigned to the scans.
   GroundTruth(const std::filesystem::path& file, const std::filesystem::path& calibration, const ScanSource& scans);
 
-  /// The pose of a scan; nothing if the file has none for its time.
-  [[nodiscard]] std::optional<SE3> pose(std::size_t scan) const { return poses_.at(scan); }
+  /// The pose of a scan; nothing if the file has none for it.
+  /// \param time s, of the scan's pose
+  [[nodiscard]] std::optional<SE3> pose(std::size_t scan, double time) const;
 
 private:
-  std::vector<std::optional<SE3>> poses_;
+  Trajectory trajectory_;
+  bool is_by_time_ = false;
 };
 
 }  // namespace pcl_floam::tools

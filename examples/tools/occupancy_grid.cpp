@@ -120,12 +120,17 @@ private:
 
 }  // namespace
 
-OccupancyGrid makeGrid(const std::vector<Eigen::Vector3d>& map, const std::vector<Eigen::Vector3d>& path,
-                       const GridSettings& settings)
+void check(const GridSettings& settings)
 {
   if (!(settings.lowest < settings.highest) || !(settings.cell > 0.0)) {
     throw std::invalid_argument("the occupancy grid needs a band of heights, lower first, and cells larger than 0");
   }
+}
+
+OccupancyGrid makeGrid(const std::vector<Eigen::Vector3d>& map, const std::vector<Eigen::Vector3d>& path,
+                       const GridSettings& settings)
+{
+  check(settings);
   return GridMaker(map, path, settings).make();
 }
 

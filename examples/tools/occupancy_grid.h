@@ -17,6 +17,9 @@ struct GridSettings {
   double cell = 0.1;     ///< m
 };
 
+/// \throws std::invalid_argument unless lowest < highest and cell > 0
+void check(const GridSettings& settings);
+
 enum class GridCell : std::uint8_t { occupied = 0, unknown = 205, free = 254 };  ///< values are those of the picture
 
 /// Cells from the lower left corner, row after row.

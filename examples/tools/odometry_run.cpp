@@ -10,20 +10,35 @@ namespace pcl_floam::tools {
 
 namespace {
 
-/// s; for time stamps when neither times.txt nor --scan-period tells: the period of most rotating lidars.
-constexpr double kUsualPeriod = 0.1;
+/// The poses' times: the scans' stamps, as far as these are known.
+class PoseClock {
+public:
+  explicit PoseClock(double period) : period_(period > 0.0 ? period : kUsualPeriod) {}
 
-double outputStamp(std::optional<double> stamp, std::size_t scan, double period)
-{
-  return stamp.value_or(static_cast<double>(scan) * (period > 0.0 ? period : kUsualPeriod));
-}
+  double at(std::optional<double> stamp, std::size_t scan, double since_stamp)
+  {
+    const double next = last_ ? *last_ + period_ : static_cast<double>(scan) * period_;
+    if (stamp && last_ && *stamp > *last_) {
+      period_ = *stamp - *last_;
+    }
+    last_ = stamp.value_or(next);
+    return *last_ + since_stamp;
+  }
+
+private:
+  /// s; where neither times.txt nor --scan-period tells: the period of most rotating lidars.
+  static constexpr double kUsualPeriod = 0.1;
+
+  double period_;
+  std::optional<double> last_;
+};
 
 bool isRecording(const ScanSource& scans)
 {
   return scans.format() != ScanFormat::pcd && scans.format() != ScanFormat::kitti_bin;
 }
 
-/// Reads and tracks one scan.
+/// Reads and tracks scans.
 class ScanTracker {
 public:
   ScanTracker(OdometryPipeline& odometry, const ScanSource& scans, ProgressBar& progress, RunResult& result)
@@ -31,19 +46,42 @@ public:
   {
   }
 
+  /// \return whether it can be read; else why not is told
+  bool read(std::size_t scan)
+  {
+    try {
+      scans_.read(scan, cloud_);
+      (void)viewOf(cloud_);  // what contradicts itself cannot be tracked either
+      return true;
+    } catch (const std::exception& error) {
+      result_.unreadable.push_back({scans_.name(scan), error.what()});
+      progress_.message("cannot be read" + std::string(isRecording(scans_) ? "" : ", its pose is predicted") + ": " +
+                        std::string(error.what()));
+      return false;
+    }
+  }
+
+  /// The scan that was read last.
   const OdometryReport& track(std::size_t scan)
   {
-    const bool is_read = read(scan);
     takeStamp(scan);
-    const OdometryReport& report = is_read ? odometry_.track(viewOf(cloud_), stamp_) : odometry_.trackMissing(stamp_);
-    result_.scans.push_back(scan);
-    ++result_.states[static_cast<std::size_t>(report.state)];
-    result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
-    if (readable_) {
-      result_.times.push_back(report.milliseconds);
-      tell(scan, report);
-      result_.last_read = report;
+    const OdometryReport& report = odometry_.track(viewOf(cloud_), stamp_);
+    note(scan, report);
+    result_.times.push_back(report.milliseconds);
+    tell(scan, report);
+    result_.last_read = report;
+    return report;
+  }
+
+  /// One that could not be read. Of a recording its time is not known either.
+  const OdometryReport& miss(std::size_t scan)
+  {
+    stamp_.reset();
+    if (!isRecording(scans_)) {
+      takeStamp(scan);
     }
+    const OdometryReport& report = odometry_.trackMissing(stamp_);
+    note(scan, report);
     return report;
   }
 
@@ -58,17 +96,18 @@ public:
 
   /// Of the last scan.
   [[nodiscard]] std::optional<double> stamp() const { return stamp_; }
-  [[nodiscard]] bool isReadable() const { return readable_; }
   [[nodiscard]] pcl::PCLPointCloud2& cloud() { return cloud_; }
 
 private:
-  /// A recording's times are known when its scans are read; none is, of one that cannot be read.
+  void note(std::size_t scan, const OdometryReport& report)
+  {
+    result_.scans.push_back(scan);
+    ++result_.states[static_cast<std::size_t>(report.state)];
+    result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
+  }
+
   void takeStamp(std::size_t scan)
   {
-    if (!readable_ && isRecording(scans_)) {
-      stamp_.reset();
-      return;
-    }
     stamp_ = scans_.stamp(scan);
     if (isRecording(scans_) && stamp_ && last_stamp_ && !(*stamp_ > *last_stamp_)) {
       tellTime(scan);
@@ -99,23 +138,11 @@ private:
     } else if (!report.reason.empty()) {
       progress_.message(file + ": " + report.reason);
     }
-    if (report.provisional && !result_.last_read.provisional) {
-      progress_.message(file + ": the first scans do not tell how the sensor moves: poses may yet be corrected");
+    if (report.provisional && !result_.last_read.provisional && !progress_.isQuiet()) {
+      progress_.message(file +
+                        ": the first scans do not tell yet how the sensor moves, or when each point was "
+                        "measured: poses may be corrected");
     }
-  }
-
-  bool read(std::size_t scan)
-  {
-    readable_ = true;
-    try {
-      scans_.read(scan, cloud_);
-      (void)viewOf(cloud_);  // what contradicts itself cannot be tracked either
-    } catch (const std::exception& error) {
-      readable_ = false;
-      result_.unreadable.push_back({scans_.name(scan), error.what()});
-      progress_.message("cannot be read, its pose is predicted: " + std::string(error.what()));
-    }
-    return readable_;
   }
 
   OdometryPipeline& odometry_;
@@ -123,7 +150,6 @@ private:
   ProgressBar& progress_;
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
-  bool readable_ = false;
   std::size_t late_ = 0;  ///< scans whose time is not after the one before
   std::optional<double> stamp_;
   std::optional<double> last_stamp_;
@@ -164,7 +190,7 @@ std::string timesProblem(const ScanSource& scans, ScanRange range)
 }
 
 RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range, ResultWriter& writer,
-                      const ScanSaver& saver, bool quiet)
+                      ScanSaver& saver, bool quiet)
 {
   RunResult result;
   ProgressBar progress(range.count, quiet);
@@ -173,24 +199,42 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
   if (!times_problem.empty()) {
     progress.message(times_problem);
   }
-  for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
-    const std::size_t scan = range.first + i;
-    const OdometryReport& report = tracker.track(scan);
-    try {
-      writer.write(scan, outputStamp(tracker.stamp(), scan, odometry.parameters().scan_period), report);
-      if (tracker.isReadable()) {
-        saver.save(scan, tracker.cloud(), report, odometry.parameters());
+  PoseClock clock(odometry.parameters().scan_period);
+  const auto write = [&](std::size_t scan, const OdometryReport& report) {
+    const double time = clock.at(tracker.stamp(), scan, report.since_stamp);
+    writer.write(scan, time, report);
+    return time;
+  };
+  std::vector<std::size_t> missing;
+  try {
+    for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
+      const std::size_t scan = range.first + i;
+      const bool is_read = tracker.read(scan);
+      if (!is_read) {
+        missing.push_back(scan);
       }
-    } catch (const FileError& error) {
-      result.output_problem = error.what();
-      progress.message(result.output_problem);
-      break;
+      // Where a recording is cut off, there need not have been another scan.
+      if (is_read || !isRecording(scans)) {
+        for (const std::size_t before : missing) {
+          write(before, tracker.miss(before));
+        }
+        missing.clear();
+      }
+      if (is_read) {
+        const OdometryReport& report = tracker.track(scan);
+        saver.save(scan, write(scan, report), tracker.cloud(), report, odometry.parameters());
+      }
+      progress.update(i + 1);
     }
-    progress.update(i + 1);
+    saver.finish();
+  } catch (const FileError& error) {
+    result.output_problem = error.what();
+    progress.message(result.output_problem);
   }
   tracker.finish();
   for (const StampedPose& pose : writer.written()) {
     result.poses.push_back(pose.world_T_sensor);
+    result.stamps.push_back(pose.stamp);
   }
   return result;
 }
@@ -200,7 +244,7 @@ PosePairs pairWithTruth(const RunResult& result, const GroundTruth& truth)
   PosePairs pairs;
   SE3 first_T_world;
   for (std::size_t i = 0; i < result.scans.size(); ++i) {
-    const std::optional<SE3> true_pose = truth.pose(result.scans[i]);
+    const std::optional<SE3> true_pose = truth.pose(result.scans[i], result.stamps[i]);
     if (true_pose) {
       first_T_world = pairs.size() == 0 ? true_pose->inverse() : first_T_world;
       pairs.add(result.poses[i], first_T_world * *true_pose);

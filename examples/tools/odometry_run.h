@@ -27,7 +27,8 @@ struct UnreadableScan {
 /// What came of a run, finished or cut short.
 struct RunResult {
   std::vector<std::size_t> scans;        ///< their numbers in the folder
-  std::vector<SE3> poses;                ///< one each
+  std::vector<SE3> poses;                ///< one each ...
+  std::vector<double> stamps;            ///< ... and its time, s
   std::vector<StageTimes> times;         ///< of those that were read
   std::array<std::size_t, 5> states{};   ///< number of scans by TrackingState
   std::size_t with_weak_directions = 0;  ///< scans that left a direction to the prediction
@@ -57,7 +58,7 @@ struct ScanRange {
 /// Tracks scan after scan and writes what comes of each at once. Scans that cannot be read or tracked are told and
 /// predicted over. Ends early on Ctrl-C, or if the results cannot be written.
 [[nodiscard]] RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanRange range,
-                                    ResultWriter& writer, const ScanSaver& saver, bool quiet);
+                                    ResultWriter& writer, ScanSaver& saver, bool quiet);
 
 /// The poses for which there is ground truth. The true ones are re-based: the first is the identity.
 [[nodiscard]] PosePairs pairWithTruth(const RunResult& result, const GroundTruth& truth);

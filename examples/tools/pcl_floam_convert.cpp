@@ -9,10 +9,7 @@
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/scan_writer.h>
 
-#include <iomanip>
 #include <iostream>
-#include <locale>
-#include <sstream>
 #include <system_error>
 
 using namespace pcl_floam;
@@ -67,28 +64,12 @@ int list(const ConvertOptions& options)
   return kExitFine;
 }
 
-/// Two runs' scans in one folder could not be told apart.
-void prepareFolder(const std::filesystem::path& folder)
-{
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw FileError(folder, "cannot be created: " + error.message());
-  }
-  if (!std::filesystem::is_empty(folder, error)) {
-    throw FileError(
-        folder, error ? "cannot be listed: " + error.message() : "is not empty: the scans need a folder of their own");
-  }
-}
-
 /// Writes scan after scan.
 class Converter {
 public:
   Converter(const ScanSource& scans, const ConvertOptions& options)
       : scans_(scans), options_(options), progress_(scans.size(), options.quiet)
   {
-    times_.imbue(std::locale::classic());
-    times_ << std::fixed << std::setprecision(9);
   }
 
   /// \return whether all could be read and written
@@ -127,14 +108,14 @@ private:
       return false;
     }
     has_times_ &= stamp.has_value();
-    times_ << stamp.value_or(0.0) << '\n';
+    times_.push_back(stamp.value_or(0.0));
     return true;
   }
 
   void finish()
   {
-    if (has_times_) {
-      writeTextFile(options_.output / "times.txt", times_.str());
+    if (has_times_ && !times_.empty()) {
+      writeTimes(times_, options_.output / "times.txt");
     }
   }
 
@@ -142,14 +123,14 @@ private:
   const ConvertOptions& options_;
   ProgressBar progress_;
   pcl::PCLPointCloud2 cloud_;
-  std::ostringstream times_;
+  std::vector<double> times_;
   bool has_times_ = true;
 };
 
 int run(const ConvertOptions& options)
 {
   const ScanSource scans(options.scans, ScanSourceOptions{options.topic, options.calibration});
-  prepareFolder(options.output);
+  prepareScanFolder(options.output);
   noteInterruptions();
   const bool complete = Converter(scans, options).run();
   constexpr int kSignalBase = 128;  // as shells have it

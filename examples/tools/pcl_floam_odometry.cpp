@@ -78,6 +78,11 @@ ScanSourceOptions sourceOptions(const OdometryOptions& options)
   return {options.topic, of_lidar ? options.calibration : std::filesystem::path()};
 }
 
+GridSettings gridSettings(const OdometryOptions& options)
+{
+  return {options.grid[0], options.grid[1], options.grid_cell};
+}
+
 /// All that a run needs, checked before it begins.
 struct Preparation {
   Preparation(const OdometryOptions& options)
@@ -92,8 +97,9 @@ struct Preparation {
       odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
                           options.localize ? MapUse::frozen : MapUse::kept_current);
     }
-    for (const std::filesystem::path& folder : {options.output, options.save_scans}) {
-      refuseToWriteAmong(scans, folder);
+    refuseToWriteAmong(scans, options.output);
+    if (!options.grid.empty()) {
+      check(gridSettings(options));
     }
     saver = ScanSaver(options.save_scans);
     writer = std::make_unique<ResultWriter>(options.output);
@@ -172,8 +178,8 @@ bool writeExtras(const OdometryOptions& options, const OdometryPipeline& odometr
     written &= writeResult([&] { writePly(map, options.output / "map.ply"); });
   }
   if (!options.grid.empty()) {
-    const GridSettings settings{options.grid[0], options.grid[1], options.grid_cell};
-    written &= writeResult([&] { writeGrid(makeGrid(map, path, settings), options.output / "grid"); });
+    const OccupancyGrid grid = makeGrid(map, path, gridSettings(options));
+    written &= writeResult([&] { writeGrid(grid, options.output / "grid"); });
   }
   return written;
 }

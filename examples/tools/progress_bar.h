@@ -14,6 +14,8 @@ public:
   /// \param quiet show no progress; messages are shown all the same
   ProgressBar(std::size_t total, bool quiet);
 
+  [[nodiscard]] bool isQuiet() const { return quiet_; }
+
   /// Ends the bar's line, also when an exception cuts the run short.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;

@@ -6,6 +6,7 @@
 
 #include <iomanip>
 #include <locale>
+#include <sstream>
 #include <system_error>
 
 namespace pcl_floam::tools {
@@ -66,6 +67,17 @@ void ResultWriter::writePoses(const StampedPose& pose, const std::vector<SE3>& c
   for (TrajectoryWriter* writer : {&kitti_, &tum_}) {
     corrected.empty() ? writer->write(pose) : writer->writeAgain(written_);
   }
+}
+
+void writeTimes(const std::vector<double>& times, const std::filesystem::path& file)
+{
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::fixed << std::setprecision(9);
+  for (const double time : times) {
+    text << time << '\n';
+  }
+  writeTextFile(file, text.str());
 }
 
 void writeTextFile(const std::filesystem::path& file, const std::string& text)

@@ -37,6 +37,10 @@ private:
   std::ofstream timing_;
 };
 
+/// One time in each line, s, as beside a folder of scans.
+/// \throws FileError if it cannot be written.
+void writeTimes(const std::vector<double>& times, const std::filesystem::path& file);
+
 /// Writes a text file in one go.
 /// \throws FileError if it cannot be written.
 void writeTextFile(const std::filesystem::path& file, const std::string& text);

@@ -1,5 +1,7 @@
 #include "scan_saver.h"
 
+#include "result_writer.h"
+
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
@@ -7,6 +9,7 @@
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/scan_writer.h>
 
+#include <algorithm>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -16,6 +19,10 @@ namespace pcl_floam::tools {
 void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters)
 {
   const CloudView view = viewOf(cloud);
+  if (parameters.compensation != CompensationMode::none && view.time.exists()) {
+    const auto isTime = [&](const pcl::PCLPointField& field) { return field.offset == view.time.offset; };
+    cloud.fields.erase(std::remove_if(cloud.fields.begin(), cloud.fields.end(), isTime), cloud.fields.end());
+  }
   const SweepMotion motion(report.registration.sweep_twist, fractionOf(PoseInstant::middle),
                            report.registration.sweep_acceleration);
   if (motion.isStill() || parameters.compensation == CompensationMode::none) {
@@ -47,20 +54,40 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
   }
 }
 
-ScanSaver::ScanSaver(std::filesystem::path folder) : folder_(std::move(folder))
+void prepareScanFolder(const std::filesystem::path& folder)
 {
   std::error_code error;
-  if (!folder_.empty() && !std::filesystem::create_directories(folder_, error) && error) {
-    throw FileError(folder_, "cannot be created: " + error.message());
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw FileError(folder, "cannot be created: " + error.message());
+  }
+  if (!std::filesystem::is_empty(folder, error)) {
+    throw FileError(
+        folder, error ? "cannot be listed: " + error.message() : "is not empty: the scans need a folder of their own");
   }
 }
 
-void ScanSaver::save(std::size_t scan, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
-                     const OdometryParameters& parameters) const
+ScanSaver::ScanSaver(std::filesystem::path folder) : folder_(std::move(folder))
+{
+  if (!folder_.empty()) {
+    prepareScanFolder(folder_);
+  }
+}
+
+void ScanSaver::save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
+                     const OdometryParameters& parameters)
 {
   if (!folder_.empty()) {
     undistort(cloud, report, parameters);
     writePcd(cloud, folder_ / numberedName(scan));
+    times_.push_back(time);
+  }
+}
+
+void ScanSaver::finish() const
+{
+  if (!folder_.empty()) {
+    writeTimes(times_, folder_ / "times.txt");
   }
 }
 

@@ -9,25 +9,35 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <vector>
 
 namespace pcl_floam::tools {
 
-/// Re-expresses every point at the instant that the poses describe; fields other than x, y, z stay.
+/// Re-expresses every point at the instant that the poses describe. Times that the points had are no longer theirs, and
+/// go; other fields stay.
 void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters);
 
-/// Writes undistorted scans as FOLDER/000000.pcd and so on, by the scan's number.
+/// The folder, created if need be, in which scans are written: those of two runs could not be told apart.
+/// \throws FileError if it cannot be created or is not empty.
+void prepareScanFolder(const std::filesystem::path& folder);
+
+/// Writes undistorted scans as FOLDER/000000.pcd and so on, by the scan's number, and the times of their poses.
 class ScanSaver {
 public:
-  /// \param folder created if need be; empty: nothing is written
-  /// \throws FileError if it cannot be created.
+  /// \param folder as \ref prepareScanFolder wants it; empty: nothing is written
   explicit ScanSaver(std::filesystem::path folder);
 
+  /// \param time s, of the pose
   /// \throws FileError if the file cannot be written.
-  void save(std::size_t scan, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
-            const OdometryParameters& parameters) const;
+  void save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
+            const OdometryParameters& parameters);
+
+  /// After the last scan. \throws FileError if times.txt cannot be written.
+  void finish() const;
 
 private:
   std::filesystem::path folder_;
+  std::vector<double> times_;
 };
 
 /// 000012.pcd

@@ -5,6 +5,7 @@
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -86,6 +87,19 @@ int lineDirection(const CloudView& cloud, const ScanLines& lines)
     }
   }
   return balance > 0 ? 1 : (balance < 0 ? -1 : 0);
+}
+
+/// Whether the scan shows more than half a turn. What sees less need not turn at all, as a flash lidar.
+bool goesRound(const CloudView& cloud, const ScanLines& lines)
+{
+  constexpr std::size_t kSectors = 36;
+  constexpr std::size_t kStep = 8;  // points: some thousand are enough
+  std::array<bool, kSectors> is_seen{};
+  for (std::size_t n = 0; n < lines.index.size(); n += kStep) {
+    const auto i = static_cast<std::size_t>(lines.index[n]);
+    is_seen[static_cast<std::size_t>(azimuthInTurns(cloud.x(i), cloud.y(i)) * kSectors) % kSectors] = true;
+  }
+  return 2 * static_cast<std::size_t>(std::count(is_seen.begin(), is_seen.end(), true)) > kSectors;
 }
 
 /// Azimuth of the first measurable point, in rad.
@@ -174,6 +188,19 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
   return withinSweep(fraction);
 }
 
+double ScanTiming::sinceStamp(double fraction, double stamp) const
+{
+  constexpr double kNear = 10.0;  // s: no sweep lasts so long, and no two clocks agree so well by chance
+  if (source != ScanTimingSource::time_field) {
+    return 0.0;
+  }
+  const double within = fraction * duration;
+  if (std::abs(start) < kNear) {
+    return start + within;
+  }
+  return std::abs(start - stamp) < kNear ? start - stamp + within : within;
+}
+
 ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,
                           ScanRotation rotation, int threads)
 {
@@ -185,7 +212,8 @@ ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTi
   if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {
     return timing;
   }
-  if ((any || source == ScanTimingSource::azimuth) && timingFromAzimuth(cloud, lines, rotation, timing)) {
+  if (((any && goesRound(cloud, lines)) || source == ScanTimingSource::azimuth) &&
+      timingFromAzimuth(cloud, lines, rotation, timing)) {
     return timing;
   }
   return {};

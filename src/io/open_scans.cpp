@@ -106,7 +106,7 @@ MessageInput openRecordings(const fs::path& input)
   if (!any && !opened.recordings.empty()) {
     (void)opened.recordings.front()->read(0);  // tells why none can be opened
   }
-  opened.format = ScanFormat::rosbag2;
+  opened.format = opened.format == ScanFormat::rosbag1 ? ScanFormat::rosbag1 : ScanFormat::rosbag2;
   return opened;
 }
 

@@ -157,7 +157,7 @@ std::unique_ptr<ScanReader> openFolder(const fs::path& folder)
     }
   }
   if (listing.pcd.empty() && listing.bin.empty()) {
-    throw FileError(folder, "has no .pcd or .bin file, and no recording (.mcap, .db3)");
+    throw FileError(folder, "has no .pcd or .bin file, and no recording (.mcap, .db3, .bag)");
   }
   if (!listing.pcd.empty() && !listing.bin.empty()) {
     throw FileError(place, "has both .pcd and .bin files: which are the scans?");

@@ -27,12 +27,13 @@ double ScanClock::period() const
 
 double ScanClock::error() const
 {
-  return std::sqrt(static_cast<double>(stands_) + static_cast<double>(stood_));
+  return std::sqrt(static_cast<double>(standing_ == 1) + static_cast<double>(stood_));
 }
 
 double ScanClock::tick(std::optional<double> stamp)
 {
-  stood_ = std::exchange(stands_, false);
+  const int stood = std::exchange(standing_, 0);
+  stood_ = stood == 1;
   if (!stamp || !std::isfinite(*stamp)) {
     unstamped_ += 1.0;
     return 1.0;
@@ -49,9 +50,13 @@ double ScanClock::tick(std::optional<double> stamp)
   if (elapsed > 0.0 && std::isfinite(elapsed)) {
     remember(elapsed / (1.0 + counted));  // in any case: the period may have been taken from stamps that were wrong
   }
-  stands_ = !clock_was_set && elapsed <= kNoTime * usual;
-  if (stands_) {
-    return 0.0;
+  if (!clock_was_set && elapsed <= kNoTime * usual) {
+    standing_ = usual > 0.0 ? stood + 1 : 2;
+    if (standing_ == 1) {
+      return 0.0;
+    }
+    unstamped_ = counted + 1.0;
+    return 1.0;
   }
   return clock_was_set ? 1.0 : std::max(0.0, elapsed / period() - counted);
 }

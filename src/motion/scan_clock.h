@@ -14,7 +14,8 @@ public:
   explicit ScanClock(double period = 0.0) : given_period_(period) {}
 
   /// Periods since the last scan: 1 without a stamp, which the next stamp does not count again; 0 for a stamp that does
-  /// not advance. A hundred and more, forwards or back, mean that the clock was set: that is 1, too.
+  /// not advance, but as without one for those that follow and do not either, or if none ever did. A hundred and more,
+  /// forwards or back, mean that the clock was set: that is 1, too.
   double tick(std::optional<double> stamp);
 
   /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at
@@ -29,8 +30,8 @@ private:
 
   double given_period_;
   std::optional<double> last_stamp_;
-  bool stands_ = false;         ///< the last stamp did not advance ...
-  bool stood_ = false;          ///< ... or the one before
+  int standing_ = 0;            ///< the last stamps that did not advance
+  bool stood_ = false;          ///< the one before the last did not
   double unstamped_ = 0.0;      ///< periods counted since the last stamp
   std::vector<double> recent_;  ///< the last differences of stamps, s a period
 };

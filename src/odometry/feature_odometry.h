@@ -103,7 +103,7 @@ struct FeatureOdometry : OdometryRun {
     report.milliseconds.scan_lines = watch.lap();
     scan.takeFeatures(cloud, parameters);
     report.milliseconds.features = watch.lap();
-    scan.describeIn(report);
+    describeScan();
   }
 
   [[nodiscard]] bool hasEnoughFeatures() const

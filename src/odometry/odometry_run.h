@@ -26,20 +26,32 @@ struct OdometryRun {
   SE3 initial_pose;  ///< of the first scan, at the instant of the parameters
   PreparedScan scan;
   PendingHint hint;
-  double sweep_fraction = 0.0;  ///< of the last scan that told of it
-  double periods = 0.0;         ///< since the last scan that was registered ...
-  double periods_error = 0.0;   ///< ... and how far off that may be
+  double sweep_fraction = 0.0;       ///< of the last scan that told of it
+  double periods = 0.0;              ///< since the last scan that was registered ...
+  double periods_error = 0.0;        ///< ... and how far off that may be
+  std::optional<double> scan_stamp;  ///< s
+  double since_stamp = 0.0;          ///< of the poses, s; of the last scan that told of it
   OdometryReport report;
   Stopwatch watch;
 
   void beginScan(std::size_t points, std::optional<double> stamp)
   {
+    scan_stamp = stamp;
     report = OdometryReport();
     report.points = points;
+    report.since_stamp = since_stamp;
     watch.start();
     hint.elapse();
     periods += clock.tick(stamp);
     periods_error = std::hypot(periods_error, clock.error());
+  }
+
+  /// What was found out about the scan.
+  void describeScan()
+  {
+    scan.describeIn(report);
+    since_stamp = scan.timing.sinceStamp(fractionOf(parameters.pose_instant), scan_stamp.value_or(scan.timing.start));
+    report.since_stamp = since_stamp;
   }
 
   void reachScan()

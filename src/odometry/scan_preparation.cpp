@@ -25,14 +25,18 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
 
 bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters& parameters)
 {
-  const bool may_be_azimuth =
-      parameters.timing_source == ScanTimingSource::automatic || parameters.timing_source == ScanTimingSource::azimuth;
-  if (timing.valid() || !lines.sorted_by_azimuth || !may_be_azimuth ||
-      parameters.compensation == CompensationMode::none) {
+  const bool is_asked = parameters.timing_source == ScanTimingSource::azimuth;
+  if ((!is_asked && parameters.timing_source != ScanTimingSource::automatic) ||
+      parameters.rotation != ScanRotation::automatic || parameters.compensation == CompensationMode::none) {
     return false;
   }
-  timing = findScanTiming(scan, lines, ScanTimingSource::azimuth, ScanRotation::clockwise, parameters.threads);
-  sweep_fraction = timing.valid() ? 1.0 : 0.0;
+  if (timing.valid()) {
+    return timing.source == ScanTimingSource::azimuth && !is_asked;
+  }
+  if (lines.sorted_by_azimuth) {
+    timing = findScanTiming(scan, lines, parameters.timing_source, ScanRotation::clockwise, parameters.threads);
+    sweep_fraction = timing.valid() ? 1.0 : 0.0;
+  }
   return timing.valid();
 }
 

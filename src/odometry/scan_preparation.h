@@ -22,8 +22,9 @@ struct PreparedScan {
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
-  /// Takes times from the azimuth where nothing tells which way the head turned, or whether the scan was compensated:
-  /// as of a head that turns clockwise from the rear. \return whether it had to
+  /// Takes times from the azimuth where nothing else tells them: where the points' order does not either, as of a head
+  /// that turns clockwise from the rear. \return whether it had to: it may turn the other way, or the scan was
+  /// compensated
   bool supposeTimes(const CloudView& scan, const OdometryParameters& parameters);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
   /// Apart from the features, so that both can be taken at a time.

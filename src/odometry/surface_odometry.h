@@ -66,7 +66,7 @@ struct SurfaceOdometry : OdometryRun {
         parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
     scan.takeEdges(cloud.size, sweep.edges);
     report.milliseconds.features = watch.lap();
-    scan.describeIn(report);
+    describeScan();
     if (!scan.lines.valid()) {
       scan.takeForMap(sweep.dense);
     }
@@ -172,7 +172,8 @@ struct SurfaceOdometry : OdometryRun {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
     } else if (direction() < 0.0) {
-      report.rotation = ScanRotation::counterclockwise;
+      report.rotation =
+          report.rotation == ScanRotation::clockwise ? ScanRotation::counterclockwise : ScanRotation::clockwise;
       report.registration.sweep_twist = -report.registration.sweep_twist;
     }
   }

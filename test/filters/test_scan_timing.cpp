@@ -106,6 +106,31 @@ TEST(ScanTiming, FromTimeFieldsOfEveryUnitAndType)
   }
 }
 
+/// When a sweep ended, by the clock of its stamp.
+TEST(ScanTiming, TellsWhenAPoseIsByTheStampsClock)
+{
+  const auto returns = sweepRoom(Room(), smallLidar());
+  const auto endOf = [&](const pcl::PCLPointCloud2& cloud, double stamp) {
+    return stamp + timingOf(viewOf(cloud)).sinceStamp(1.0, stamp);
+  };
+  const double stamp = 1.7e9;
+  EXPECT_NEAR(endOf(cloudWithTimes<float>(returns, "time", 0.0, 0.1), stamp), stamp + 0.1, 1e-5);
+  EXPECT_NEAR(endOf(cloudWithTimes<float>(returns, "time", -0.1, 0.1), stamp), stamp, 1e-5);
+  EXPECT_NEAR(endOf(cloudWithTimes<double>(returns, "timestamp", stamp - 0.04, 0.1), stamp), stamp + 0.06, 1e-5);
+  EXPECT_NEAR(endOf(cloudWithTimes<double>(returns, "timestamp", 5e12, 1e8), stamp), stamp + 0.1, 1e-5);
+  EXPECT_EQ(timingOf(viewOf(cloudWithTimes<float>(returns, "time", 0.0, 0.0))).sinceStamp(1.0, stamp), 0.0);
+}
+
+/// A camera of light: what it sees from side to side takes no time.
+TEST(ScanTiming, WhatSeesLessThanHalfATurnNeedNotTurn)
+{
+  const auto sweep = sweepRoom(Room(), smallLidar());
+  const auto third = static_cast<std::ptrdiff_t>(sweep.size() / 3);
+  const auto cloud = cloudWithTimes<float>({sweep.begin() + third, sweep.begin() + 2 * third}, "time", 0.0, 0.0);
+  EXPECT_EQ(timingOf(viewOf(cloud)).source, ScanTimingSource::none);
+  EXPECT_EQ(timingOf(viewOf(cloud), ScanTimingSource::azimuth).source, ScanTimingSource::azimuth);
+}
+
 TEST(ScanTiming, AllThreadsFindTheSame)
 {
   const auto returns = sweepRoom(Room(), smallLidar());

@@ -49,13 +49,32 @@ TEST(ScanClock, StampsThatDoNotAdvanceAreNoTime)
 {
   ScanClock clock = steadyClock();
   EXPECT_EQ(clock.tick(100.0), 0.0);
-  EXPECT_EQ(clock.tick(100.0 + 1e-7), 0.0);  // a motion divided by it would be no velocity
+  EXPECT_NEAR(clock.tick(100.1), 1.0, 1e-9);
+  EXPECT_EQ(clock.tick(100.1 + 1e-7), 0.0);  // a motion divided by it would be no velocity
+  EXPECT_NEAR(clock.tick(100.2), 1.0, 1e-5);
   EXPECT_EQ(clock.tick(99.8), 0.0);
   EXPECT_GE(clock.error(), 1.0);
   EXPECT_NEAR(clock.tick(99.9), 1.0, 1e-9);
   EXPECT_EQ(clock.error(), 1.0) << "since when is not known either";
   EXPECT_NEAR(clock.tick(100.0), 1.0, 1e-9);
   EXPECT_EQ(clock.error(), 0.0);
+}
+
+TEST(ScanClock, StampsThatStandStillAreNone)
+{
+  ScanClock clock = steadyClock();
+  EXPECT_EQ(clock.tick(100.0), 0.0);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(clock.tick(100.0), 1.0) << i;
+  }
+  EXPECT_EQ(clock.error(), 0.0);
+  EXPECT_NEAR(clock.tick(100.6), 1.0, 1e-9) << "what was counted is in it";
+
+  ScanClock never;
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(never.tick(0.0), 1.0) << i;
+    EXPECT_EQ(never.error(), 0.0) << i;
+  }
 }
 
 TEST(ScanClock, AClockThatWasSetTellsNothing)

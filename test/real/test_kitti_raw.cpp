@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -32,8 +33,9 @@ std::vector<SE3> trackAll(const ScanSource& scans, OdometryPipeline& odometry)
     const OdometryReport& report = odometry.track(viewOf(scan), scans.stamp(i));
     EXPECT_EQ(report.state, i == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
     EXPECT_EQ(report.scan_line_source, ScanLineSource::file_order) << "scan " << i;
-    EXPECT_EQ(report.scan_lines, 64U) << "scan " << i;
-    EXPECT_EQ(report.timing_source, ScanTimingSource::azimuth) << "scan " << i;
+    EXPECT_GE(report.scan_lines, 64U) << "scan " << i;
+    std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
+              poses.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
     poses.push_back(report.world_T_sensor);
   }
   return poses;
@@ -63,6 +65,28 @@ TEST(KittiRaw0001, TrajectoryAgreesWithGroundTruth)
   EXPECT_LT(absoluteTrajectoryError(poses, truth).rms, 0.06);
   EXPECT_LT(kittiMetric(poses, truth, lengthsFor(pathLength(truth)), 1).translation, 0.45);
   EXPECT_LT(kittiMetric(poses, truth, {100.0}, 1).translation, 0.45);
+  EXPECT_EQ(odometry.report().timing_source, ScanTimingSource::azimuth);
+}
+
+/// KITTI's odometry benchmark undistorted its scans, and nothing in its files says so.
+TEST(KittiOdometry01, TheScansAreFoundToBeCompensated)
+{
+  const std::filesystem::path folder = dataFolder("kitti_odom_01_ramp");
+  SKIP_WITHOUT(folder);
+  const auto pathWith = [&](CompensationMode mode) {
+    OdometryParameters parameters;
+    parameters.compensation = mode;
+    OdometryPipeline odometry(parameters);
+    std::vector<SE3> path = trackAll(ScanSource(folder / "velodyne"), odometry);
+    EXPECT_EQ(odometry.report().timing_source == ScanTimingSource::none, mode != CompensationMode::none);
+    return path;
+  };
+  const std::vector<SE3> told = pathWith(CompensationMode::none);
+  const std::vector<SE3> found = pathWith(OdometryParameters().compensation);
+  ASSERT_EQ(found.size(), told.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_LT((found[i].translation - told[i].translation).norm(), 0.05) << i;
+  }
 }
 
 TEST(KittiRaw0001, CompensationPays)

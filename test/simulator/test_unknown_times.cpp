@@ -4,6 +4,7 @@
 
 #include <pcl_floam/odometry/odometry.h>
 
+#include <pcl/common/io.h>
 #include <pcl/point_types.h>
 
 #include <gtest/gtest.h>
@@ -108,6 +109,28 @@ INSTANTIATE_TEST_SUITE_P(All, UnknownTimes,
                                                                    : runs == TimeRuns::against_it   ? "AgainstIt"
                                                                                                     : "NotAtAll");
                          });
+
+/// Nor does it say so.
+TEST(FlashLidar, IsFoundToHaveNoSweep)
+{
+  SimulationOptions options = simulated("room", 43);
+  options.sensor = "flash";
+  Simulation simulation(options);
+  Odometry<pcl::PointXYZ> odometry;
+  SE3 world_T_first;
+  double off = 0.0;
+  for (std::size_t i = 0; i < 40; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    pcl::PointCloud<pcl::PointXYZ> cloud;
+    pcl::copyPointCloud(sweep.cloud, cloud);
+    world_T_first = i == 0 ? sweep.world_T_middle : world_T_first;
+    const OdometryReport& report = odometry.track(cloud, sweep.start_time);
+    EXPECT_EQ(report.timing_source, ScanTimingSource::none) << i;
+    off = std::max(
+        off, ((world_T_first.inverse() * sweep.world_T_middle).translation - report.world_T_sensor.translation).norm());
+  }
+  EXPECT_LT(off, 0.03);
+}
 
 /// Whatever was found of sweeps without times holds for those alone.
 TEST(TimesLostNowAndThen, CountWhereTheyAreThere)

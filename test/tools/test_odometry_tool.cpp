@@ -168,6 +168,12 @@ TEST_F(OdometryTool, TruthWithTimesIsFoundByTime)
   EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
 }
 
+TEST_F(OdometryTool, ABadGridIsRefusedBeforeTheRun)
+{
+  EXPECT_EQ(odometry("scans -o result --grid 1,0").status, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "result"));
+}
+
 TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
 {
   folder.write("short.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");

@@ -45,7 +45,10 @@ TEST_F(RecordingTools, ThePathIsThatOfTheSameScansInAFolder)
   const Trajectory tum = readTrajectory(folder.path() / "result/poses.tum.txt");
   EXPECT_NEAR(tum.back().stamp, 1700000000.7, 1e-5);
 
-  EXPECT_EQ(ScanSource(folder.path() / "saved").size(), kScans);
+  const ScanSource saved(folder.path() / "saved");
+  EXPECT_EQ(saved.size(), kScans);
+  EXPECT_NEAR(saved.stamp(7).value(), 1700000000.7, 1e-5);
+  EXPECT_EQ(odometry("drive.mcap -o result --plot none --save-scans saved").status, 2) << "other scans are there";
   EXPECT_EQ(contentOf(folder.path() / "result/path.ply").substr(0, 4), "ply\n");
   EXPECT_NE(contentOf(folder.path() / "result/path.ply").find("element vertex 8\n"), std::string::npos);
   EXPECT_EQ(contentOf(folder.path() / "result/map.ply").substr(0, 4), "ply\n");
@@ -56,10 +59,16 @@ TEST_F(RecordingTools, ThePathIsThatOfTheSameScansInAFolder)
 TEST_F(RecordingTools, ARecordingThatWasCutOffGivesItsScansAndTheStatusOne)
 {
   folder.write("drive.mcap", whole.substr(0, whole.size() - 3000));
+  const std::string truth = contentOf(folder.path() / "truth.txt");
+  folder.write("truth7.txt", truth.substr(0, truth.rfind('\n', truth.size() - 2) + 1));
   const Outcome outcome = odometry("drive.mcap -o result --plot none");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("cut off"), std::string::npos) << outcome.err;
   EXPECT_EQ(summary()["scans"]["tracked"], kScans - 2);
+  EXPECT_EQ(poses().size(), kScans - 1) << "what followed, if anything, has no pose";
+  const Outcome judged = odometry("drive.mcap -o result --plot none --ground-truth truth7.txt");
+  EXPECT_EQ(judged.status, 1) << judged.err;
+  EXPECT_EQ(summary()["accuracy"]["poses"], kScans - 1);
 
   const Outcome converted = convert("drive.mcap -o converted");
   EXPECT_EQ(converted.status, 1);
@@ -103,6 +112,36 @@ TEST_F(RecordingTools, ADamagedFirstScanIsNoReasonToRefuseTheOthers)
   folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", damaged));
   EXPECT_EQ(odometry("drive.mcap -o result --plot none").status, 1);
   EXPECT_EQ(summary()["scans"]["tracked"], kScans - 2);
+}
+
+TEST_F(RecordingTools, AScanThatCannotBeReadStandsBetweenTheTimesOfItsNeighbours)
+{
+  std::vector<std::string> damaged = messages;
+  damaged[3].resize(30);
+  folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", damaged));
+  EXPECT_EQ(odometry("drive.mcap -o result --plot none").status, 1);
+  const Trajectory tum = readTrajectory(folder.path() / "result/poses.tum.txt");
+  ASSERT_EQ(tum.size(), kScans);
+  for (std::size_t i = 0; i < kScans; ++i) {
+    EXPECT_NEAR(tum[i].stamp, 1700000000.0 + 0.1 * static_cast<double>(i), 1e-5) << i;
+  }
+}
+
+/// A driver that never sets its clock.
+TEST_F(RecordingTools, TimesThatStandStillAreNone)
+{
+  std::vector<std::string> still;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    test::CloudShape shape;
+    shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
+    shape.point_step = 16;
+    shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
+    test::MessageBytes message(true);
+    still.push_back(test::pointCloud2(shape, message, 1700000000, 0));
+  }
+  folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", still));
+  EXPECT_EQ(odometry("drive.mcap -o result --plot none -q").status, 0);
+  EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
 }
 
 TEST_F(RecordingTools, TimesThatRunBackAreToldOnceAndCounted)

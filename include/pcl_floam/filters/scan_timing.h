@@ -14,7 +14,7 @@ namespace pcl_floam {
 
 /// Where the points' times come from.
 enum class ScanTimingSource : std::uint8_t {
-  automatic,   ///< the time field, else the organised columns, else the azimuth
+  automatic,   ///< the time field, else the organised columns, else the azimuth of what sees more than half a turn
   time_field,  ///< a field `time`, `t`, `timestamp`, ...: s, ms, us or ns, relative or absolute
   columns,     ///< the columns of an organised cloud: one column is one firing
   azimuth,     ///< the azimuth, with the direction of rotation told by the firing order, or by \ref Odometry's poses
@@ -50,6 +50,10 @@ struct ScanTiming {
   {
     return withinSweep((time * seconds_per_unit - start) / duration);
   }
+
+  /// Seconds from a scan's stamp to a fraction of its sweep, as the time field tells: times may count from the stamp or
+  /// by the stamp's own clock; if by another one, the stamp is taken for that of the sweep's start. 0 without a field.
+  [[nodiscard]] double sinceStamp(double fraction, double stamp) const;
 
 private:
   static float withinSweep(double fraction)

@@ -23,7 +23,7 @@ bool endsWith(std::string_view text, std::string_view ending)
 bool isRecording(const fs::path& file)
 {
   const std::string name = file.filename().string();
-  return endsWith(name, ".mcap") || endsWith(name, ".db3") || endsWith(name, ".mcap.zstd") ||
+  return endsWith(name, ".bag") || endsWith(name, ".mcap") || endsWith(name, ".db3") || endsWith(name, ".mcap.zstd") ||
          endsWith(name, ".db3.zstd");
 }
 

@@ -255,6 +255,18 @@ TEST_F(Bags, WithAndWithoutIndexGiveTheSame)
   expectProblem(bag(indexed, 0, 0), "the bag has no index");
 }
 
+TEST_F(Bags, AFolderOfTheirPartsIsOneRecording)
+{
+  const std::string whole = bag(indexed + connection(), 1, 1);
+  folder.write("parts/drive_9.bag", whole);
+  folder.write("parts/drive_10.bag", whole);
+  const ScanSource scans(folder.path() / "parts");
+  EXPECT_EQ(scans.format(), ScanFormat::rosbag1);
+  ASSERT_EQ(scans.size(), 2U);
+  EXPECT_EQ(scans.path(0).filename(), "drive_9.bag");
+  EXPECT_EQ(scans.path(1).filename(), "drive_10.bag");
+}
+
 TEST_F(Bags, AChunkThatIsNotAsItsHeaderSaysIsTold)
 {
   expectProblem(bag(chunk(records, "none", 1), 1, 1), "it should be of");
