@@ -102,18 +102,20 @@ std::vector<FirstLook> looksAlong(const Eigen::Vector3d& open, const Sweep& seco
   return looks;
 }
 
-/// The few whose evidence is best, no two of them nearer than \p same to each other.
+/// The few whose evidence is best and not hopelessly less than the best, no two of them nearer than \p same to each
+/// other.
 std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
 {
   std::stable_sort(motions.begin(), motions.end(),
                    [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
   constexpr std::size_t kMostLikely = 8;
+  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
   std::vector<Vector6> likely;
   for (const FirstMotion& motion : motions) {
     const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const Vector6& other) {
       return (motion.velocity - other).head<3>().norm() < same;
     });
-    if (!is_known && likely.size() < kMostLikely) {
+    if (!is_known && likely.size() < kMostLikely && motion.evidence > motions.front().evidence - kHopeless) {
       likely.push_back(motion.velocity);
     }
   }

@@ -2,7 +2,6 @@
 
 #include "common/side_by_side.h"
 #include "odometry/backward_pass.h"
-#include "odometry/first_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -204,8 +203,9 @@ std::vector<TrackSettings> Tracker::directions(bool are_known) const
 Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
 {
   Outcome outcome;
+  const FirstMotions motions = likelyFirstMotions(first_, sweep, settings_, side_);
   for (const TrackSettings& settings : directions(first_.is_direction_known && sweep.is_direction_known)) {
-    findFirstMotion(sweep, settings, outcome);
+    suppose(motions, sweep, settings, outcome);
   }
   if (!isTracking()) {
     return outcome;
@@ -219,11 +219,11 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   return outcome;
 }
 
-void Tracker::findFirstMotion(const Sweep& sweep, const TrackSettings& settings, Outcome& outcome)
+/// A track for each.
+void Tracker::suppose(const FirstMotions& motions, const Sweep& sweep, const TrackSettings& settings, Outcome& outcome)
 {
-  constexpr double kOff = 0.25;  // m: what the likely motions may still be off
+  constexpr double kOff = 0.25;  // m: what the likely motions may still be off, whichever way time runs
   constexpr int kRounds = 2;
-  const FirstMotions motions = likelyFirstMotions(first_, sweep, settings, side_);
   std::vector<Track> tracks(motions.likely.size(), Track(settings, side_, motions.open));
   std::vector<SurfaceRegistration> found(tracks.size());
   eachSideBySide(settings_.threads, tracks.size(), [&](std::size_t i) {

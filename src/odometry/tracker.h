@@ -2,7 +2,7 @@
 /// One or more tracks, judged by one evidence.
 #pragma once
 
-#include "odometry/track.h"
+#include "odometry/first_motion.h"
 
 #include <cstddef>
 #include <vector>
@@ -74,7 +74,7 @@ private:
   Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
   Outcome findFirstMotion(const Sweep& sweep);
-  void findFirstMotion(const Sweep& sweep, const TrackSettings& settings, Outcome& outcome);
+  void suppose(const FirstMotions& motions, const Sweep& sweep, const TrackSettings& settings, Outcome& outcome);
   void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
   bool stepAll(const Sweep& sweep);
