@@ -134,6 +134,14 @@ std::vector<Eigen::Vector3d> mapPoints(const KeyframeVoxelMap& map)
   return points;
 }
 
+std::vector<float> mapIntensities(const KeyframeVoxelMap& map)
+{
+  std::vector<float> intensities = map.intensities(FeatureKind::edge);
+  const std::vector<float> planes = map.intensities(FeatureKind::plane);
+  intensities.insert(intensities.end(), planes.begin(), planes.end());
+  return intensities;
+}
+
 /// A missing gnuplot is told but no failure: the figures are all there.
 void drawPlot(const OdometryOptions& options, const OdometryPipeline& odometry, const RunResult& result,
               const PosePairs& pairs)
@@ -175,7 +183,7 @@ bool writeExtras(const OdometryOptions& options, const OdometryPipeline& odometr
   bool written = true;
   if (options.ply) {
     written &= writeResult([&] { writePly(path, options.output / "path.ply"); });
-    written &= writeResult([&] { writePly(map, options.output / "map.ply"); });
+    written &= writeResult([&] { writePly(map, options.output / "map.ply", mapIntensities(odometry.map())); });
   }
   if (!options.grid.empty()) {
     const OccupancyGrid grid = makeGrid(map, path, gridSettings(options));

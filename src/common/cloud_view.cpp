@@ -149,6 +149,12 @@ double FieldView::read(const std::uint8_t* point) const
   return value;
 }
 
+float CloudView::intensityOf(std::size_t i) const
+{
+  const double value = intensity.exists() ? intensity.read(point(i)) : 0.0;
+  return std::isfinite(value) ? static_cast<float>(value) : 0.0F;
+}
+
 void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& view)
 {
   view.x_offset = coordinateOffset(fields, "x");

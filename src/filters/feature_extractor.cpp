@@ -246,6 +246,7 @@ private:
     feature.smoothness = line_.sigma[k];
     feature.index = lines_.index[first_index_ + k];
     feature.time = timeOf(n);
+    feature.intensity = cloud_.intensityOf(static_cast<std::size_t>(feature.index));
     return feature;
   }
 

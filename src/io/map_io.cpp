@@ -6,17 +6,27 @@
 #include <pcl_floam/io/map_io.h>
 #include <pcl_floam/io/scan_source.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
 #include <locale>
 #include <system_error>
+#include <utility>
 
 namespace pcl_floam {
 
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
+
+struct Layer {
+  Points points;
+  std::vector<float> intensities;
+};
+
+constexpr std::array<std::pair<FeatureKind, const char*>, 2> kLayers{
+    {{FeatureKind::edge, kMapEdgesFile}, {FeatureKind::plane, kMapPlanesFile}}};
 
 /// m; up to here float32 is good to a quarter of a millimetre.
 constexpr double kFarthestUnshifted = 5000.0;
@@ -41,8 +51,9 @@ Eigen::Vector3d originFor(const Points& points)
 
 // Under another name until it is whole: a run that is killed meanwhile, or a full disk, leaves the former map.
 // PCL's PCDWriter refuses clouds without points, and prints the VIEWPOINT with six digits only.
-void writeLayer(const Points& points, const std::filesystem::path& file)
+void writeLayer(const Layer& layer, const std::filesystem::path& file)
 {
+  const Points& points = layer.points;
   const Eigen::Vector3d origin = originFor(points);
   const std::filesystem::path unfinished = file.string() + ".part";
   errno = 0;
@@ -53,13 +64,14 @@ void writeLayer(const Points& points, const std::filesystem::path& file)
   stream.imbue(std::locale::classic());
   stream << std::fixed << std::setprecision(0);
   stream << "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n"
-         << "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
+         << "FIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
          << "WIDTH " << points.size() << "\nHEIGHT 1\n"
          << "VIEWPOINT " << origin.x() << ' ' << origin.y() << ' ' << origin.z() << " 1 0 0 0\n"
          << "POINTS " << points.size() << "\nDATA binary\n";
-  for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3f relative = (point - origin).cast<float>();
-    stream.write(reinterpret_cast<const char*>(relative.data()), 3 * sizeof(float));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Eigen::Vector4f fields;
+    fields << (points[i] - origin).cast<float>(), layer.intensities[i];
+    stream.write(reinterpret_cast<const char*>(fields.data()), 4 * sizeof(float));
   }
   stream.close();
   std::error_code error;
@@ -74,7 +86,7 @@ void writeLayer(const Points& points, const std::filesystem::path& file)
   }
 }
 
-Points readLayer(const std::filesystem::path& file)
+Layer readLayer(const std::filesystem::path& file)
 {
   const std::string content = readWholeFile(file);
   const PcdHeader header = parsePcdHeader(file, content);
@@ -84,11 +96,14 @@ Points readLayer(const std::filesystem::path& file)
     throw FileError(file, "VIEWPOINT, which the map's points are relative to, is not finite");
   }
   const CloudView view = viewOf(cloud);
-  Points points(view.size);
+  Layer layer{Points(view.size), std::vector<float>(view.size, 0.0F)};
   for (std::size_t i = 0; i < view.size; ++i) {
-    points[i] = header.viewpoint + Eigen::Vector3f(view.x(i), view.y(i), view.z(i)).cast<double>();
+    layer.points[i] = header.viewpoint + Eigen::Vector3f(view.x(i), view.y(i), view.z(i)).cast<double>();
+    if (view.intensity.exists()) {
+      layer.intensities[i] = static_cast<float>(view.intensity.read(view.point(i)));
+    }
   }
-  return points;
+  return layer;
 }
 
 }  // namespace
@@ -100,15 +115,18 @@ void saveMap(const KeyframeVoxelMap& map, const std::filesystem::path& folder)
   if (error) {
     throw FileError(folder, "cannot be created: " + error.message());
   }
-  writeLayer(map.points(FeatureKind::edge), folder / kMapEdgesFile);
-  writeLayer(map.points(FeatureKind::plane), folder / kMapPlanesFile);
+  for (const auto& [kind, file] : kLayers) {
+    writeLayer({map.points(kind), map.intensities(kind)}, folder / file);
+  }
 }
 
 KeyframeVoxelMap loadMap(const std::filesystem::path& folder, const MapParameters& parameters)
 {
   KeyframeVoxelMap map(parameters);
-  map.insertPoints(FeatureKind::edge, readLayer(folder / kMapEdgesFile));
-  map.insertPoints(FeatureKind::plane, readLayer(folder / kMapPlanesFile));
+  for (const auto& [kind, file] : kLayers) {
+    const Layer layer = readLayer(folder / file);
+    map.insertPoints(kind, layer.points, layer.intensities);
+  }
   return map;
 }
 

@@ -106,12 +106,20 @@ void writePcd(const pcl::PCLPointCloud2& cloud, const std::filesystem::path& fil
   writeFile(file, content);
 }
 
-void writePly(const std::vector<Eigen::Vector3d>& points, const std::filesystem::path& file)
+void writePly(const std::vector<Eigen::Vector3d>& points, const std::filesystem::path& file,
+              const std::vector<float>& intensities)
 {
+  if (!intensities.empty() && intensities.size() != points.size()) {
+    throw std::invalid_argument("writePly: not as many intensities as points");
+  }
   std::string content = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
-                        "\nproperty double x\nproperty double y\nproperty double z\nend_header\n";
-  for (const Eigen::Vector3d& point : points) {
-    content.append(reinterpret_cast<const char*>(point.data()), 3 * sizeof(double));
+                        "\nproperty double x\nproperty double y\nproperty double z\n" +
+                        (intensities.empty() ? "" : "property float intensity\n") + "end_header\n";
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    content.append(reinterpret_cast<const char*>(points[i].data()), 3 * sizeof(double));
+    if (!intensities.empty()) {
+      content.append(reinterpret_cast<const char*>(&intensities[i]), sizeof(float));
+    }
   }
   writeFile(file, content);
 }

@@ -5,6 +5,7 @@
 #include "map/voxel_layer.h"
 
 #include <cstddef>
+#include <stdexcept>
 
 namespace pcl_floam {
 
@@ -40,13 +41,15 @@ struct KeyframeVoxelMap::Impl {
                      int threads)
   {
     std::vector<Eigen::Vector3d> points(features.size());
+    std::vector<float> intensities(features.size());
     const auto count = static_cast<std::ptrdiff_t>(features.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (std::ptrdiff_t n = 0; n < count; ++n) {
       const auto i = static_cast<std::size_t>(n);
       points[i] = world_T_sensor * Eigen::Vector3d(features[i].x, features[i].y, features[i].z);
+      intensities[i] = features[i].intensity;
     }
-    layer_of_kind.insertEach(points.data(), points.size(), threads);
+    layer_of_kind.insertEach(points.data(), points.size(), threads, intensities.data());
   }
 
   /// Cropping touches every block, so it is done once the sensor has gone a tenth of the horizon.
@@ -93,11 +96,15 @@ void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sen
   impl_->rebuildTrees();
 }
 
-void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points)
+void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points,
+                                    const std::vector<float>& intensities)
 {
-  for (const Eigen::Vector3d& point : points) {
-    if (point.allFinite()) {
-      impl_->layer(kind).insertMean(point);
+  if (!intensities.empty() && intensities.size() != points.size()) {
+    throw std::invalid_argument("KeyframeVoxelMap::insertPoints: not as many intensities as points");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].allFinite()) {
+      impl_->layer(kind).insertMean(points[i], intensities.empty() ? 0.0F : intensities[i]);
     }
   }
   impl_->rebuildTrees();
@@ -148,6 +155,11 @@ const NeighborSearch& KeyframeVoxelMap::search(FeatureKind kind) const
 std::vector<Eigen::Vector3d> KeyframeVoxelMap::points(FeatureKind kind) const
 {
   return impl_->layer(kind).points();
+}
+
+std::vector<float> KeyframeVoxelMap::intensities(FeatureKind kind) const
+{
+  return impl_->layer(kind).intensities();
 }
 
 const MapParameters& KeyframeVoxelMap::parameters() const

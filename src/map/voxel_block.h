@@ -44,25 +44,27 @@ public:
     return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
   }
 
+  [[nodiscard]] float intensity(std::size_t i) const { return voxels_[i].intensity; }
+
   void prefetchPoints() const { prefetch(groups_.data(), std::min<std::size_t>(groups_.size(), 8) * sizeof(Group)); }
 
   /// A mean takes in no more points than this: later ones keep moving it, so that it can follow the world.
   static constexpr float kMaxAveraged = 20.0F;
 
-  /// Averages a point into its voxel. \return true if the voxel was empty
+  /// Averages a point, and its intensity, into its voxel. \return true if the voxel was empty
   /// \param weight points that it stands for, if the voxel was
-  bool add(std::uint32_t voxel, const Eigen::Vector3f& offset, float weight = 1.0F)
+  bool add(std::uint32_t voxel, const Eigen::Vector3f& offset, float intensity, float weight = 1.0F)
   {
     for (std::size_t i = 0; i < voxels_.size(); ++i) {
       if (voxels_[i].number == voxel) {
-        average(i, offset);
+        average(i, offset, intensity);
         return false;
       }
     }
     if (voxels_.size() % kLanes == 0) {
       groups_.emplace_back();
     }
-    voxels_.push_back({voxel, weight});
+    voxels_.push_back({voxel, weight, intensity});
     set(voxels_.size() - 1, offset);
     return true;
   }
@@ -132,6 +134,7 @@ private:
   struct Voxel {
     std::uint32_t number;  ///< within the block
     float count;           ///< points averaged so far, up to a limit
+    float intensity;
   };
 
   void set(std::size_t i, const Eigen::Vector3f& offset)
@@ -142,10 +145,12 @@ private:
     group.z[i % kLanes] = offset.z();
   }
 
-  void average(std::size_t i, const Eigen::Vector3f& offset)
+  void average(std::size_t i, const Eigen::Vector3f& offset, float intensity)
   {
-    voxels_[i].count = std::min(voxels_[i].count + 1.0F, kMaxAveraged);
-    set(i, point(i) + (offset - point(i)) / voxels_[i].count);
+    Voxel& voxel = voxels_[i];
+    voxel.count = std::min(voxel.count + 1.0F, kMaxAveraged);
+    voxel.intensity += (intensity - voxel.intensity) / voxel.count;
+    set(i, point(i) + (offset - point(i)) / voxel.count);
   }
 
   std::vector<Group> groups_;

@@ -70,7 +70,7 @@ VoxelLayer::BlockQuery VoxelLayer::blockQuery(const Eigen::Vector3d& query) cons
 {
   const BlockKey key = keyOf(query);
   // In double: the subtraction takes away the kilometres, what is left fits a float.
-  return {key, (query - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>()};
+  return {key, (query - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>(), 0.0F};
 }
 
 std::uint32_t VoxelLayer::voxelAt(const Eigen::Vector3f& offset) const
@@ -159,25 +159,25 @@ void VoxelLayer::insert(const Eigen::Vector3d& point)
   insertEach(&point, 1);
 }
 
-void VoxelLayer::insertMean(const Eigen::Vector3d& point)
+void VoxelLayer::insertMean(const Eigen::Vector3d& point, float intensity)
 {
   if (isRepresentable(point)) {
     const BlockQuery place = blockQuery(point);
     VoxelBlock& block = blocks_[static_cast<std::size_t>(findOrAddBlock(place.key))];
-    size_ += block.add(voxelAt(place.offset), place.offset, VoxelBlock::kMaxAveraged) ? 1 : 0;
+    size_ += block.add(voxelAt(place.offset), place.offset, intensity, VoxelBlock::kMaxAveraged) ? 1 : 0;
   }
 }
 
-void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count, int threads)
+void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count, int threads, const float* intensities)
 {
   if (threads > 1) {
-    insertShared(points, count, threads);
+    insertShared(points, intensities, count, threads);
   } else {
-    insertInTurn(points, count);
+    insertInTurn(points, intensities, count);
   }
 }
 
-void VoxelLayer::insertShared(const Eigen::Vector3d* points, std::size_t count, int threads)
+void VoxelLayer::insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads)
 {
   constexpr std::int32_t kNowhere = kNone - 1;
   constexpr std::size_t kAhead = 8;
@@ -188,6 +188,7 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, std::size_t count, 
     const auto i = static_cast<std::size_t>(n);
     const bool representable = isRepresentable(points[i]);
     places[i] = representable ? blockQuery(points[i]) : BlockQuery{};
+    places[i].intensity = intensities != nullptr ? intensities[i] : 0.0F;
     blocks[i] = representable ? findBlock(places[i].key) : kNowhere;
   }
   for (std::size_t i = 0; i < count; ++i) {
@@ -206,14 +207,14 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, std::size_t count, 
       }
       if (owners[i] == thread) {
         VoxelBlock& block = blocks_[static_cast<std::size_t>(blocks[i])];
-        added += block.add(voxelAt(places[i].offset), places[i].offset) ? 1 : 0;
+        added += block.add(voxelAt(places[i].offset), places[i].offset, places[i].intensity) ? 1 : 0;
       }
     }
   }
   size_ += added;
 }
 
-void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, std::size_t count)
+void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count)
 {
   constexpr std::size_t kTogether = 16;
   std::array<BlockQuery, kTogether> places;
@@ -223,6 +224,7 @@ void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, std::size_t count)
     for (std::size_t i = first; i < std::min(first + kTogether, count); ++i) {
       if (isRepresentable(points[i])) {
         places[together] = blockQuery(points[i]);
+        places[together].intensity = intensities != nullptr ? intensities[i] : 0.0F;
         prefetchEntry(places[together].key);
         ++together;
       }
@@ -236,7 +238,8 @@ void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, std::size_t count)
     for (std::size_t i = 0; i < together; ++i) {
       // One that was not there may have been added for a point just before.
       const std::int32_t block = blocks[i] != kNone ? blocks[i] : findOrAddBlock(places[i].key);
-      size_ += blocks_[static_cast<std::size_t>(block)].add(voxelAt(places[i].offset), places[i].offset) ? 1 : 0;
+      const BlockQuery& place = places[i];
+      size_ += blocks_[static_cast<std::size_t>(block)].add(voxelAt(place.offset), place.offset, place.intensity);
     }
   }
 }
@@ -305,6 +308,18 @@ void VoxelLayer::clear()
   blocks_.clear();
   size_ = 0;
   rebuildTable(1024);
+}
+
+std::vector<float> VoxelLayer::intensities() const
+{
+  std::vector<float> intensities;
+  intensities.reserve(size_);
+  for (const VoxelBlock& block : blocks_) {
+    for (std::size_t i = 0; i < block.size(); ++i) {
+      intensities.push_back(block.intensity(i));
+    }
+  }
+  return intensities;
 }
 
 std::vector<Eigen::Vector3d> VoxelLayer::points() const

@@ -30,10 +30,12 @@ public:
 
   /// \ref insert for \p count points, in their order; fetches for the later ones while it works on the first.
   /// \param threads >= 1; the layer does not depend on it
-  void insertEach(const Eigen::Vector3d* points, std::size_t count, int threads = 1);
+  /// \param intensities \p count of them; nullptr: zeros
+  void insertEach(const Eigen::Vector3d* points, std::size_t count, int threads = 1,
+                  const float* intensities = nullptr);
 
   /// \ref insert for a point that stands for many, as those of a saved map do.
-  void insertMean(const Eigen::Vector3d& point);
+  void insertMean(const Eigen::Vector3d& point, float intensity = 0.0F);
 
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
   void crop(const Eigen::Vector3d& center, double radius);
@@ -50,6 +52,8 @@ public:
 
   /// The voxels' points, block by block.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
+  /// Theirs, in the same order.
+  [[nodiscard]] std::vector<float> intensities() const;
 
   void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
   void nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
@@ -61,6 +65,7 @@ private:
   struct BlockQuery {
     BlockKey key;                                      ///< of the block that holds the query
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< of the query from that block's corner
+    float intensity = 0.0F;                            ///< of a point that is inserted
   };
 
   /// Finite, and its block's number fits 32 bits: within a billion blocks of the origin.
@@ -72,8 +77,8 @@ private:
   [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
   void prefetchEntry(const BlockKey& key) const;
   std::int32_t findOrAddBlock(const BlockKey& key);
-  void insertInTurn(const Eigen::Vector3d* points, std::size_t count);
-  void insertShared(const Eigen::Vector3d* points, std::size_t count, int threads);
+  void insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count);
+  void insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads);
   void enterInTable(std::int32_t block);
   void rebuildTable(std::size_t capacity);
   /// Makes a block and those around it known to each other.

@@ -69,11 +69,12 @@ void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edge
   }
 }
 
-void PreparedScan::takeForMap(const std::vector<ScanPoint>& by_space)
+void PreparedScan::takeForMap(const CloudView& scan, const std::vector<ScanPoint>& by_space)
 {
   features.clear();
   for (const ScanPoint& point : by_space) {
-    features.planes.push_back({point.x, point.y, point.z, point.time, 0.0F, point.index});
+    features.planes.push_back({point.x, point.y, point.z, point.time, 0.0F, point.index,
+                               scan.intensityOf(static_cast<std::size_t>(point.index))});
   }
 }
 

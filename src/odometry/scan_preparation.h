@@ -32,7 +32,7 @@ struct PreparedScan {
   /// E_k as points, once there are features.
   void takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges);
   /// What a map is made of where there are no scan lines, and so no features: points taken by space, as planes.
-  void takeForMap(const std::vector<ScanPoint>& by_space);
+  void takeForMap(const CloudView& scan, const std::vector<ScanPoint>& by_space);
   void describeIn(OdometryReport& report) const;
 
 private:

@@ -68,7 +68,7 @@ struct SurfaceOdometry : OdometryRun {
     report.milliseconds.features = watch.lap();
     describeScan();
     if (!scan.lines.valid()) {
-      scan.takeForMap(sweep.dense);
+      scan.takeForMap(cloud, sweep.dense);
     }
   }
 

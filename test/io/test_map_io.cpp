@@ -68,6 +68,20 @@ TEST(MapIo, AMapReadsBackAsPreciselyFarFromTheOriginAsNearIt)
   }
 }
 
+TEST(MapIo, IntensitiesAreKept)
+{
+  const TemporaryFolder folder;
+  const std::vector<Eigen::Vector3d> points = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
+  KeyframeVoxelMap map;
+  map.insertPoints(FeatureKind::plane, points, {7.0F, 8.0F});
+  saveMap(map, folder.path());
+  EXPECT_EQ(loadMap(folder.path()).intensities(FeatureKind::plane), map.intensities(FeatureKind::plane));
+  pcl::PointCloud<pcl::PointXYZI> cloud;
+  ASSERT_EQ(pcl::io::loadPCDFile((folder.path() / kMapPlanesFile).string(), cloud), 0);
+  ASSERT_EQ(cloud.size(), 2U);
+  EXPECT_EQ(cloud[0].intensity + cloud[1].intensity, 15.0F);
+}
+
 TEST(MapIo, NearTheOriginOtherProgramsSeeWorldCoordinates)
 {
   const TemporaryFolder folder;

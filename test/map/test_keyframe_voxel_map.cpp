@@ -129,6 +129,34 @@ TEST(KeyframeVoxelMap, SameInsertionsSamePointsInTheSameOrder)
   EXPECT_EQ(a.points(FeatureKind::plane), b.points(FeatureKind::plane));
 }
 
+/// For every number of threads.
+TEST(KeyframeVoxelMap, APointsIntensityIsTheMeanOfWhatFellIntoItsVoxel)
+{
+  for (const int threads : {1, 2}) {
+    KeyframeVoxelMap map;
+    for (const float intensity : {10.0F, 20.0F, 60.0F}) {
+      FeatureSet features;
+      for (int i = 0; i < 30; ++i) {
+        Feature feature;
+        feature.x = 0.5F + static_cast<float>(i);
+        feature.y = feature.z = 0.05F;
+        feature.intensity = intensity + static_cast<float>(i);
+        features.planes.push_back(feature);
+      }
+      map.insert(features, SE3(), threads);
+    }
+    const std::vector<Eigen::Vector3d> points = map.points(FeatureKind::plane);
+    const std::vector<float> intensities = map.intensities(FeatureKind::plane);
+    ASSERT_EQ(points.size(), 30U);
+    ASSERT_EQ(intensities.size(), points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_NEAR(intensities[i], 30.0 + points[i].x() - 0.5, 1e-4);
+    }
+    EXPECT_TRUE(map.intensities(FeatureKind::edge).empty());
+    EXPECT_THROW(map.insertPoints(FeatureKind::edge, points, {1.0F}), std::invalid_argument);
+  }
+}
+
 TEST(KeyframeVoxelMap, PointsComeBackFromItsCloud)
 {
   KeyframeVoxelMap map;

@@ -75,10 +75,28 @@ TEST(Odometry, PosesAreThoseOfTheNamedInstant)
       odometry.track(sweep(acceleratedPath, k));
       EXPECT_LT(error(odometry.pose(), acceleratedPath, k, fractionOf(instant)), 0.05)
           << toString(instant) << ", scan " << k;
+      EXPECT_NEAR(odometry.report().since_stamp, 0.1 * fractionOf(instant), 1e-3);
     }
     // The path is fast enough to tell the instants apart.
     EXPECT_GT(error(odometry.pose(), acceleratedPath, kScans - 1, 1.0 - fractionOf(instant)),
               instant == PoseInstant::middle ? -1.0 : 0.2);
+  }
+}
+
+TEST(Odometry, ItsMapHasTheScansIntensities)
+{
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    for (PointXYZIRT& point : scan) {
+      point.intensity = 42.0F;
+    }
+    odometry.track(scan);
+  }
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    const std::vector<float> intensities = odometry.map().intensities(kind);
+    EXPECT_EQ(intensities, std::vector<float>(odometry.map().size(kind), 42.0F));
+    EXPECT_FALSE(intensities.empty());
   }
 }
 

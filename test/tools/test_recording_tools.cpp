@@ -52,6 +52,7 @@ TEST_F(RecordingTools, ThePathIsThatOfTheSameScansInAFolder)
   EXPECT_EQ(contentOf(folder.path() / "result/path.ply").substr(0, 4), "ply\n");
   EXPECT_NE(contentOf(folder.path() / "result/path.ply").find("element vertex 8\n"), std::string::npos);
   EXPECT_EQ(contentOf(folder.path() / "result/map.ply").substr(0, 4), "ply\n");
+  EXPECT_NE(contentOf(folder.path() / "result/map.ply").find("property float intensity\n"), std::string::npos);
   EXPECT_EQ(contentOf(folder.path() / "result/grid.pgm").substr(0, 3), "P5\n");
   EXPECT_NE(contentOf(folder.path() / "result/grid.yaml").find("image: grid.pgm"), std::string::npos);
 }

@@ -50,6 +50,8 @@ struct CloudView {
   [[nodiscard]] float x(std::size_t i) const { return readFloat(point(i) + x_offset); }
   [[nodiscard]] float y(std::size_t i) const { return readFloat(point(i) + y_offset); }
   [[nodiscard]] float z(std::size_t i) const { return readFloat(point(i) + z_offset); }
+  /// 0 without the field, or where it is not finite.
+  [[nodiscard]] float intensityOf(std::size_t i) const;
   [[nodiscard]] bool isOrganized() const { return height > 1; }
 
   static float readFloat(const std::uint8_t* bytes)

@@ -12,8 +12,8 @@ namespace pcl_floam {
 inline constexpr const char* kMapEdgesFile = "map_edges.pcd";
 inline constexpr const char* kMapPlanesFile = "map_planes.pcd";
 
-/// Writes the layers of a map as `map_edges.pcd` and `map_planes.pcd` (binary, x y z float32) into a folder, which is
-/// created if need be. Files of these names are replaced once the new ones are whole.
+/// Writes the layers of a map as `map_edges.pcd` and `map_planes.pcd` (binary, x y z intensity float32) into a folder,
+/// which is created if need be. Files of these names are replaced once the new ones are whole.
 ///
 /// The coordinates are those of the world, unless the map reaches beyond 5 km from the world's origin, where float32
 /// would be too coarse: then they are relative to a point of whole metres in the map's middle, which each file gives

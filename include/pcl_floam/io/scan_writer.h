@@ -16,8 +16,10 @@ namespace pcl_floam {
 /// \throws std::invalid_argument if the cloud contradicts itself: a field that ends beyond its point, too few bytes.
 void writePcd(const pcl::PCLPointCloud2& cloud, const std::filesystem::path& file);
 
-/// Writes points as a binary PLY file (x, y, z float64), likewise.
+/// Writes points as a binary PLY file (x, y, z float64, and intensity float32 if there are any), likewise.
 /// \throws FileError if it cannot be written.
-void writePly(const std::vector<Eigen::Vector3d>& points, const std::filesystem::path& file);
+/// \throws std::invalid_argument if there are as many intensities neither as points nor as none
+void writePly(const std::vector<Eigen::Vector3d>& points, const std::filesystem::path& file,
+              const std::vector<float>& intensities = {});
 
 }  // namespace pcl_floam

@@ -68,7 +68,10 @@ public:
 
   /// Adds points to a layer, as they are in a saved map: each stands for many, and is forgotten only once two scans
   /// have seen through it. World frame, m; points that are not finite are left out.
-  void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points);
+  /// \param intensities one of each point, or none: then they are 0
+  /// \throws std::invalid_argument if there are as many neither as points nor as none
+  void insertPoints(FeatureKind kind, const std::vector<Eigen::Vector3d>& points,
+                    const std::vector<float>& intensities = {});
 
   /// Takes weight from the voxels that a scan sees through, up to `see_through_range` from the sensor, and forgets
   /// those that have none left: at once where one was hit once or a few times, else after some scans.
@@ -90,6 +93,9 @@ public:
 
   /// All points of a layer in the world frame, in m, in an order that depends on what was inserted and forgotten alone.
   [[nodiscard]] std::vector<Eigen::Vector3d> points(FeatureKind kind) const;
+
+  /// Their intensities, in the same order: means of what fell into each voxel; 0 where scans have none.
+  [[nodiscard]] std::vector<float> intensities(FeatureKind kind) const;
 
   /// As \ref points, as a cloud that PCL can save, show and filter. Single precision.
   ///
