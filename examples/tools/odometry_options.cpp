@@ -114,7 +114,7 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
       ->type_name("FOLDER");
   app.add_option("--ground-truth", o.ground_truth,
                  "true poses, KITTI or TUM format: adds accuracy and plots.\n"
-                 "One pose per scan of the folder, or TUM with times.txt")
+                 "TUM by time, where the scans have times; else one pose per scan")
       ->type_name("FILE");
   app.add_option("--calibration", o.calibration,
                  "of a Velodyne HDL-64, to decode its packets: its db.xml or\nYAML. Or KITTI's calib.txt, "

@@ -138,6 +138,12 @@ private:
     } else if (!report.reason.empty()) {
       progress_.message(file + ": " + report.reason);
     }
+    const ScanTimingSource asked = odometry_.parameters().timing_source;
+    if (result_.times.size() == 1 && report.timing_source == ScanTimingSource::none &&
+        asked != ScanTimingSource::automatic && asked != ScanTimingSource::none) {
+      progress_.message(file +
+                        ": has no times of the kind that --timing asks for: its points are taken as of one instant");
+    }
     if (report.provisional && !result_.last_read.provisional && !progress_.isQuiet()) {
       progress_.message(file +
                         ": the first scans do not tell yet how the sensor moves, or when each point was "

@@ -96,6 +96,15 @@ TEST_F(OdometryTool, TimesThatDoNotRiseAreToldAndTheScansTrackedAllTheSame)
   EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
 }
 
+TEST_F(OdometryTool, TimesThatAreAskedForAndNotThereAreTold)
+{
+  const Outcome outcome = odometry("scans -o result --plot none --quiet --timing field");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(lineCount(outcome.err), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find("0.bin: has no times of the kind that --timing asks for"), std::string::npos)
+      << outcome.err;
+}
+
 TEST_F(OdometryTool, ResultsAmongTheScansAreRefused)
 {
   const Outcome outcome = odometry("scans -o ./scans/../scans");
