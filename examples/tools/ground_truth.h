@@ -15,8 +15,8 @@ namespace pcl_floam::tools {
 /// True poses by the number of the scan in its folder.
 class GroundTruth {
 public:
-  /// By their times, if the file is TUM and the scans have times that it spans; else it must have as many poses as
-  /// there are scans.
+  /// By their times, if the file is TUM and most scans' times lie within it; else it must have as many poses as there
+  /// are scans.
   /// \param calibration KITTI's calib.txt if the poses are the camera's, else empty
   /// \throws FileError if a file cannot be read or the poses cannot be assigned to the scans.
   GroundTruth(const std::filesystem::path& file, const std::filesystem::path& calibration, const ScanSource& scans);

@@ -127,7 +127,8 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
              {"end", PoseInstant::end}},
             "instant of the sweep that the poses describe; auto is the\n"
             "middle for KITTI's .bin, whose ground truth is mid-sweep,\nand the end otherwise");
-  app.add_option("--save-scans", o.save_scans, "folder for the scans without their distortion, as PCD")
+  app.add_option("--save-scans", o.save_scans,
+                 "new or empty folder for the scans without their\ndistortion, as PCD, and times.txt")
       ->type_name("FOLDER");
   app.add_flag("--ply", o.ply, "the path and the map as path.ply and map.ply, too");
   CLI::Option* grid = app.add_option("--grid", o.grid,

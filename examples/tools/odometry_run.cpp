@@ -10,27 +10,39 @@ namespace pcl_floam::tools {
 
 namespace {
 
-/// The poses' times: the scans' stamps, as far as these are known.
+/// The poses' times: the scans' stamps, as far as these are known and rise.
 class PoseClock {
 public:
-  explicit PoseClock(double period) : period_(period > 0.0 ? period : kUsualPeriod) {}
-
-  double at(std::optional<double> stamp, std::size_t scan, double since_stamp)
+  /// \param period s, between scans of which nothing tells; 0: that of most rotating lidars
+  PoseClock(double period, std::size_t first_scan)
+      : period_(period > 0.0 ? period : kUsualPeriod), last_((static_cast<double>(first_scan) - 1.0) * period_)
   {
-    const double next = last_ ? *last_ + period_ : static_cast<double>(scan) * period_;
-    if (stamp && last_ && *stamp > *last_) {
-      period_ = *stamp - *last_;
+  }
+
+  /// \param stamps of scans that follow each other; only the last may be told
+  std::vector<double> timesOf(const std::vector<std::optional<double>>& stamps)
+  {
+    const auto n = static_cast<double>(stamps.size());
+    const std::optional<double> end = stamps.back();
+    const bool is_known = end && (!is_last_known_ || *end > last_);
+    const double step = is_known && is_last_known_ ? (*end - last_) / n : period_;
+    const double before = is_known ? *end - n * step : last_;
+    std::vector<double> times;
+    for (const std::optional<double>& stamp : stamps) {
+      const double even = before + static_cast<double>(times.size() + 1) * step;
+      times.push_back(stamp && *stamp > (times.empty() ? before : times.back()) ? *stamp : even);
     }
-    last_ = stamp.value_or(next);
-    return *last_ + since_stamp;
+    last_ = times.back();
+    is_last_known_ = is_last_known_ || is_known;
+    return times;
   }
 
 private:
-  /// s; where neither times.txt nor --scan-period tells: the period of most rotating lidars.
-  static constexpr double kUsualPeriod = 0.1;
+  static constexpr double kUsualPeriod = 0.1;  // s
 
   double period_;
-  std::optional<double> last_;
+  double last_;
+  bool is_last_known_ = false;
 };
 
 bool isRecording(const ScanSource& scans)
@@ -94,8 +106,15 @@ public:
     }
   }
 
-  /// Of the last scan.
-  [[nodiscard]] std::optional<double> stamp() const { return stamp_; }
+  /// Of a recording that of the last one alone, which has been read.
+  [[nodiscard]] std::vector<std::optional<double>> stampsOf(const std::vector<std::size_t>& numbers) const
+  {
+    std::vector<std::optional<double>> stamps(numbers.size());
+    for (std::size_t i = isRecording(scans_) ? numbers.size() - 1 : 0; i < numbers.size(); ++i) {
+      stamps[i] = scans_.stamp(numbers[i]);
+    }
+    return stamps;
+  }
   [[nodiscard]] pcl::PCLPointCloud2& cloud() { return cloud_; }
 
 private:
@@ -120,8 +139,8 @@ private:
   {
     if (late_++ == 0) {
       progress_.message(scans_.path(scan).string() + ": the time of " + scans_.name(scan) +
-                        " is not after that of the scan before: no motion is expected between them. Is the driver's "
-                        "clock right, and are the recordings in order?");
+                        " is not after that of the scan before, and tells nothing. Is the driver's clock right, and "
+                        "are the recordings in order?");
     }
   }
 
@@ -205,33 +224,33 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
   if (!times_problem.empty()) {
     progress.message(times_problem);
   }
-  PoseClock clock(odometry.parameters().scan_period);
-  const auto write = [&](std::size_t scan, const OdometryReport& report) {
-    const double time = clock.at(tracker.stamp(), scan, report.since_stamp);
-    writer.write(scan, time, report);
-    return time;
-  };
+  PoseClock clock(odometry.parameters().scan_period, range.first);
   std::vector<std::size_t> missing;
   try {
     for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
-      const std::size_t scan = range.first + i;
-      const bool is_read = tracker.read(scan);
-      if (!is_read) {
-        missing.push_back(scan);
-      }
+      missing.push_back(range.first + i);
+      const bool is_read = tracker.read(missing.back());
       // Where a recording is cut off, there need not have been another scan.
       if (is_read || !isRecording(scans)) {
-        for (const std::size_t before : missing) {
-          write(before, tracker.miss(before));
+        const std::vector<double> times = clock.timesOf(tracker.stampsOf(missing));
+        for (std::size_t k = 0; k < missing.size(); ++k) {
+          const bool is_there = is_read && k + 1 == missing.size();
+          const OdometryReport& report = is_there ? tracker.track(missing[k]) : tracker.miss(missing[k]);
+          const double time = times[k] + report.since_stamp;
+          writer.write(missing[k], time, report);
+          if (is_there) {
+            saver.save(missing[k], time, tracker.cloud(), report, odometry.parameters());
+          }
         }
         missing.clear();
       }
-      if (is_read) {
-        const OdometryReport& report = tracker.track(scan);
-        saver.save(scan, write(scan, report), tracker.cloud(), report, odometry.parameters());
-      }
       progress.update(i + 1);
     }
+  } catch (const FileError& error) {
+    result.output_problem = error.what();
+    progress.message(result.output_problem);
+  }
+  try {
     saver.finish();
   } catch (const FileError& error) {
     result.output_problem = error.what();

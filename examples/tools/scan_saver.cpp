@@ -19,10 +19,6 @@ namespace pcl_floam::tools {
 void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters)
 {
   const CloudView view = viewOf(cloud);
-  if (parameters.compensation != CompensationMode::none && view.time.exists()) {
-    const auto isTime = [&](const pcl::PCLPointField& field) { return field.offset == view.time.offset; };
-    cloud.fields.erase(std::remove_if(cloud.fields.begin(), cloud.fields.end(), isTime), cloud.fields.end());
-  }
   const SweepMotion motion(report.registration.sweep_twist, fractionOf(PoseInstant::middle),
                            report.registration.sweep_acceleration);
   if (motion.isStill() || parameters.compensation == CompensationMode::none) {
@@ -52,6 +48,8 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
     std::memcpy(point + view.y_offset, there + 1, sizeof(float));
     std::memcpy(point + view.z_offset, there + 2, sizeof(float));
   }
+  const auto isTime = [](const pcl::PCLPointField& field) { return isTimeField(field.name); };
+  cloud.fields.erase(std::remove_if(cloud.fields.begin(), cloud.fields.end(), isTime), cloud.fields.end());
 }
 
 void prepareScanFolder(const std::filesystem::path& folder)

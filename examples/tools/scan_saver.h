@@ -13,8 +13,8 @@
 
 namespace pcl_floam::tools {
 
-/// Re-expresses every point at the instant that the poses describe. Times that the points had are no longer theirs, and
-/// go; other fields stay.
+/// Re-expresses every point at the instant that the poses describe, where the sensor's motion is known. Times that the
+/// points had are then no longer theirs, and go; other fields stay.
 void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters);
 
 /// The folder, created if need be, in which scans are written: those of two runs could not be told apart.

@@ -142,6 +142,11 @@ constexpr std::array<std::string_view, 2> kIntensityNames{"intensity", "reflecti
 
 }  // namespace
 
+bool isTimeField(std::string_view name)
+{
+  return std::find(kTimeNames.begin(), kTimeNames.end(), name) != kTimeNames.end();
+}
+
 double FieldView::read(const std::uint8_t* point) const
 {
   double value = 0.0;
@@ -152,7 +157,7 @@ double FieldView::read(const std::uint8_t* point) const
 float CloudView::intensityOf(std::size_t i) const
 {
   const double value = intensity.exists() ? intensity.read(point(i)) : 0.0;
-  return std::isfinite(value) ? static_cast<float>(value) : 0.0F;
+  return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) ? static_cast<float>(value) : 0.0F;
 }
 
 void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& view)

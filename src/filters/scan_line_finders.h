@@ -34,6 +34,9 @@ bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, int t
 bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
 bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
 
+/// Whether the scan shows more than half a turn. What sees less need not turn at all, as a flash lidar.
+bool goesRound(const CloudView& cloud, const ScanLines& lines);
+
 /// Sorts each line by azimuth if the cloud's own order is not that of a sweep; sets the confidence to the
 /// fraction of steps in the prevailing direction.
 void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads);

@@ -89,11 +89,34 @@ int lineDirection(const CloudView& cloud, const ScanLines& lines)
   return balance > 0 ? 1 : (balance < 0 ? -1 : 0);
 }
 
-/// Whether the scan shows more than half a turn. What sees less need not turn at all, as a flash lidar.
+/// Whether points stand in the cloud in the order of their azimuth, as far as it goes round once.
+bool isInFiringOrder(const CloudView& cloud, const ScanTiming& timing)
+{
+  constexpr std::size_t kSamples = 64;
+  constexpr double kNear = 0.1;  // turns
+  std::size_t seen = 0;
+  std::size_t in_place = 0;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const std::size_t i = k * cloud.size / kSamples;
+    if (!isMeasurable(cloud, i)) {
+      continue;
+    }
+    ++seen;
+    const double azimuth = azimuthInTurns(cloud.x(i), cloud.y(i));
+    const double start = timing.start_azimuth / kTwoPi;
+    const double off =
+        (timing.clockwise ? start - azimuth : azimuth - start) - static_cast<double>(k) / static_cast<double>(kSamples);
+    in_place += std::abs(off - std::round(off)) < kNear ? 1 : 0;
+  }
+  return 2 * in_place > seen;
+}
+
+}  // namespace
+
 bool goesRound(const CloudView& cloud, const ScanLines& lines)
 {
   constexpr std::size_t kSectors = 36;
-  constexpr std::size_t kStep = 8;  // points: some thousand are enough
+  constexpr std::size_t kStep = 7;  // points: some thousand are enough; odd, since drivers' habits are even
   std::array<bool, kSectors> is_seen{};
   for (std::size_t n = 0; n < lines.index.size(); n += kStep) {
     const auto i = static_cast<std::size_t>(lines.index[n]);
@@ -101,6 +124,8 @@ bool goesRound(const CloudView& cloud, const ScanLines& lines)
   }
   return 2 * static_cast<std::size_t>(std::count(is_seen.begin(), is_seen.end(), true)) > kSectors;
 }
+
+namespace {
 
 /// Azimuth of the first measurable point, in rad.
 double firstAzimuth(const CloudView& cloud)
@@ -139,7 +164,9 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotat
     }
     timing.clockwise = direction < 0;
     timing.start_azimuth = firstAzimuth(cloud);
-    timing.firing_order = lines.source != ScanLineSource::file_order;
+    const bool is_against =
+        rotation != ScanRotation::automatic && timing.clockwise != (rotation == ScanRotation::clockwise);
+    timing.firing_order = !is_against && isInFiringOrder(cloud, timing);
   } else if (rotation == ScanRotation::automatic) {
     return false;  // sorted afterwards: nothing tells where the sweep began or which way it went
   } else {
@@ -190,15 +217,15 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
 
 double ScanTiming::sinceStamp(double fraction, double stamp) const
 {
-  constexpr double kNear = 10.0;  // s: no sweep lasts so long, and no two clocks agree so well by chance
+  constexpr double kNear = 10.0;  // s: no two clocks agree so well by chance
   if (source != ScanTimingSource::time_field) {
     return 0.0;
   }
   const double within = fraction * duration;
-  if (std::abs(start) < kNear) {
-    return start + within;
+  if (std::abs(start - stamp) < std::min(kNear, std::abs(start))) {
+    return start - stamp + within;
   }
-  return std::abs(start - stamp) < kNear ? start - stamp + within : within;
+  return std::abs(start) <= 2.0 * duration ? start + within : within;
 }
 
 ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,
@@ -212,8 +239,8 @@ ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTi
   if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {
     return timing;
   }
-  if (((any && goesRound(cloud, lines)) || source == ScanTimingSource::azimuth) &&
-      timingFromAzimuth(cloud, lines, rotation, timing)) {
+  const bool may_turn = rotation != ScanRotation::automatic || goesRound(cloud, lines);
+  if (((any && may_turn) || source == ScanTimingSource::azimuth) && timingFromAzimuth(cloud, lines, rotation, timing)) {
     return timing;
   }
   return {};

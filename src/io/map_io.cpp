@@ -99,9 +99,7 @@ Layer readLayer(const std::filesystem::path& file)
   Layer layer{Points(view.size), std::vector<float>(view.size, 0.0F)};
   for (std::size_t i = 0; i < view.size; ++i) {
     layer.points[i] = header.viewpoint + Eigen::Vector3f(view.x(i), view.y(i), view.z(i)).cast<double>();
-    if (view.intensity.exists()) {
-      layer.intensities[i] = static_cast<float>(view.intensity.read(view.point(i)));
-    }
+    layer.intensities[i] = view.intensityOf(i);
   }
   return layer;
 }

@@ -4,6 +4,7 @@
 #include "map/kdtree_search.h"
 #include "map/voxel_layer.h"
 
+#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 
@@ -104,7 +105,8 @@ void KeyframeVoxelMap::insertPoints(FeatureKind kind, const std::vector<Eigen::V
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].allFinite()) {
-      impl_->layer(kind).insertMean(points[i], intensities.empty() ? 0.0F : intensities[i]);
+      const bool has_intensity = !intensities.empty() && std::isfinite(intensities[i]);
+      impl_->layer(kind).insertMean(points[i], has_intensity ? intensities[i] : 0.0F);
     }
   }
   impl_->rebuildTrees();

@@ -55,7 +55,7 @@ double ScanClock::tick(std::optional<double> stamp)
     if (standing_ == 1) {
       return 0.0;
     }
-    unstamped_ = counted + 1.0;
+    unstamped_ = elapsed < 0.0 ? 0.0 : counted + 1.0;
     return 1.0;
   }
   return clock_was_set ? 1.0 : std::max(0.0, elapsed / period() - counted);

@@ -1,5 +1,6 @@
 #include "odometry/scan_preparation.h"
 
+#include "filters/scan_line_finders.h"
 #include "odometry/vertical_correction.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
@@ -16,7 +17,14 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   } else {
     findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
   }
-  timing = findScanTiming(scan, lines, parameters.timing_source, parameters.rotation, parameters.threads);
+  const auto timingBy = [&](ScanTimingSource source) {
+    return findScanTiming(scan, lines, source, parameters.rotation, parameters.threads);
+  };
+  timing = timingBy(parameters.timing_source);
+  if (!timing.valid() && turns_ && parameters.timing_source == ScanTimingSource::automatic) {
+    timing = timingBy(ScanTimingSource::azimuth);
+  }
+  turns_ = turns_ || timing.source == ScanTimingSource::azimuth;
   sweep_fraction = timing.valid() && parameters.compensation != CompensationMode::none ? 1.0 : 0.0;
   if (timing.duration > 0.0 && period > 0.0) {
     sweep_fraction *= std::min(1.0, timing.duration / period);
@@ -33,8 +41,9 @@ bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters&
   if (timing.valid()) {
     return timing.source == ScanTimingSource::azimuth && !is_asked;
   }
-  if (lines.sorted_by_azimuth) {
-    timing = findScanTiming(scan, lines, parameters.timing_source, ScanRotation::clockwise, parameters.threads);
+  turns_ = turns_ || is_asked || (lines.valid() && goesRound(scan, lines));
+  if (lines.sorted_by_azimuth && turns_) {
+    timing = findScanTiming(scan, lines, ScanTimingSource::azimuth, ScanRotation::clockwise, parameters.threads);
     sweep_fraction = timing.valid() ? 1.0 : 0.0;
   }
   return timing.valid();

@@ -37,6 +37,7 @@ struct PreparedScan {
 
 private:
   std::vector<std::uint32_t> line_of_point_;
+  bool turns_ = false;  ///< as an earlier scan showed
 };
 
 }  // namespace pcl_floam

@@ -77,6 +77,9 @@ struct SurfaceOdometry : OdometryRun {
     scan.takePoints(cloud, parameters);
     if (!lacksStructure() && hasEnoughPoints()) {
       tracker.sample(scan.points, sweep);
+    } else {
+      sweep.dense.clear();  // the last scan's
+      sweep.sample.clear();
     }
   }
 
@@ -171,7 +174,7 @@ struct SurfaceOdometry : OdometryRun {
   {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
-    } else if (direction() < 0.0) {
+    } else if (direction() < 0.0 && report.timing_source == ScanTimingSource::azimuth) {
       report.rotation =
           report.rotation == ScanRotation::clockwise ? ScanRotation::counterclockwise : ScanRotation::clockwise;
       report.registration.sweep_twist = -report.registration.sweep_twist;

@@ -334,7 +334,11 @@ void Tracker::settle()
   keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
   std::vector<std::vector<SE3>> poses(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {
-    poses[i] = posesFoundBackwards(kept_, middlesOf(hypotheses_[i].poses), hypotheses_[i].track.settings(), side_);
+    const std::vector<SE3> forwards = middlesOf(hypotheses_[i].poses);
+    poses[i] = posesFoundBackwards(kept_, forwards, hypotheses_[i].track.settings(), side_);
+    if (poses[i].empty() && hypotheses_.size() > 1) {
+      poses[i] = forwards;  // their maps must not differ in what they took in
+    }
   });
   const std::vector<bool> keyframes =
       keyframesAmong(poses[0].empty() ? middlesOf(hypotheses_[0].poses) : poses[0], side_);

@@ -118,6 +118,10 @@ TEST(ScanTiming, TellsWhenAPoseIsByTheStampsClock)
   EXPECT_NEAR(endOf(cloudWithTimes<float>(returns, "time", -0.1, 0.1), stamp), stamp, 1e-5);
   EXPECT_NEAR(endOf(cloudWithTimes<double>(returns, "timestamp", stamp - 0.04, 0.1), stamp), stamp + 0.06, 1e-5);
   EXPECT_NEAR(endOf(cloudWithTimes<double>(returns, "timestamp", 5e12, 1e8), stamp), stamp + 0.1, 1e-5);
+  for (const double young : {0.0, 0.1, 3.0, 9.9, 10.1}) {  // a simulation's, which begins at zero
+    EXPECT_NEAR(endOf(cloudWithTimes<double>(returns, "timestamp", young, 0.1), young), young + 0.1, 1e-5) << young;
+    EXPECT_NEAR(endOf(cloudWithTimes<float>(returns, "time", 0.0, 0.1), young), young + 0.1, 1e-5) << young;
+  }
   EXPECT_EQ(timingOf(viewOf(cloudWithTimes<float>(returns, "time", 0.0, 0.0))).sinceStamp(1.0, stamp), 0.0);
 }
 

@@ -70,6 +70,11 @@ TEST(ScanClock, StampsThatStandStillAreNone)
   EXPECT_EQ(clock.error(), 0.0);
   EXPECT_NEAR(clock.tick(100.6), 1.0, 1e-9) << "what was counted is in it";
 
+  ScanClock back = steadyClock();
+  EXPECT_EQ(back.tick(99.8), 0.0);
+  EXPECT_EQ(back.tick(99.7), 1.0);
+  EXPECT_NEAR(back.tick(99.8), 1.0, 1e-9);
+
   ScanClock never;
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(never.tick(0.0), 1.0) << i;

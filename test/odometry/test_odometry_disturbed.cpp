@@ -11,6 +11,28 @@
 namespace pcl_floam::test {
 namespace {
 
+/// A scan of less points than the one before is not looked at with that one's.
+TEST(OdometryDisturbed, PredictsOverScansOfNoOrFewPoints)
+{
+  for (const ScanStructure structure : {ScanStructure::automatic, ScanStructure::scan_lines, ScanStructure::space}) {
+    OdometryParameters parameters = defaults();
+    if (parameters.engine == OdometryEngine::features && structure == ScanStructure::space) {
+      continue;
+    }
+    parameters.structure = structure;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < kScans; ++k) {
+      Cloud scan = sweep(steadyPath, k);
+      if (k == 3 || k == 5) {
+        scan.resize(k == 3 ? 0 : 5);
+        scan.points.shrink_to_fit();
+      }
+      const OdometryReport& report = odometry.track(scan);
+      EXPECT_EQ(report.state == TrackingState::predicted, k == 3 || k == 5) << k << report.reason;
+    }
+  }
+}
+
 TEST(OdometryDisturbed, PredictsOverABlindScanAndTracksAgain)
 {
   Odometry<PointXYZIRT> odometry(defaults());

@@ -168,6 +168,23 @@ TEST_F(OdometryTool, TruthWithTimesIsFoundByTime)
   EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
 }
 
+/// Numbers of frames, as some write them in the place of times.
+TEST_F(OdometryTool, TruthOfOtherTimesIsTakenByNumber)
+{
+  std::string times;
+  std::string truth;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    times += std::to_string(100.0 + 0.1 * static_cast<double>(i)) + "\n";
+    truth += std::to_string(i) + " " + std::to_string(kStep * static_cast<double>(i)) + " 0 0 0 0 0 1\n";
+  }
+  folder.write("times.txt", times);
+  folder.write("truth.tum.txt", truth);
+  const Outcome outcome = odometry("scans -o result --ground-truth truth.tum.txt --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(summary()["accuracy"]["poses"], kScans);
+  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+}
+
 TEST_F(OdometryTool, ABadGridIsRefusedBeforeTheRun)
 {
   EXPECT_EQ(odometry("scans -o result --grid 1,0").status, 2);

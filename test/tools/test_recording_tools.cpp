@@ -128,6 +128,29 @@ TEST_F(RecordingTools, AScanThatCannotBeReadStandsBetweenTheTimesOfItsNeighbours
   }
 }
 
+TEST_F(RecordingTools, TimesAreGuessedBetweenThoseThatAreKnown)
+{
+  const std::vector<std::uint32_t> tenths = {0, 1, 3, 4, 6, 7, 8, 9};
+  std::vector<std::string> uneven;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    test::CloudShape shape;
+    shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
+    shape.point_step = 16;
+    shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
+    test::MessageBytes message(true);
+    uneven.push_back(test::pointCloud2(shape, message, 1700000000, tenths[i] * 100000000));
+  }
+  uneven[0].resize(30);
+  uneven[3].resize(30);
+  folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", uneven));
+  EXPECT_EQ(odometry("drive.mcap -o result --plot none").status, 1);
+  const Trajectory tum = readTrajectory(folder.path() / "result/poses.tum.txt");
+  ASSERT_EQ(tum.size(), kScans);
+  EXPECT_NEAR(tum[0].stamp, 1700000000.0, 1e-5);
+  EXPECT_NEAR(tum[3].stamp, 1700000000.45, 1e-5);
+  EXPECT_NEAR(tum[4].stamp, 1700000000.6, 1e-5);
+}
+
 /// A driver that never sets its clock.
 TEST_F(RecordingTools, TimesThatStandStillAreNone)
 {
@@ -143,6 +166,7 @@ TEST_F(RecordingTools, TimesThatStandStillAreNone)
   folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", still));
   EXPECT_EQ(odometry("drive.mcap -o result --plot none -q").status, 0);
   EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
+  EXPECT_NEAR(readTrajectory(folder.path() / "result/poses.tum.txt").back().stamp, 1700000000.7, 1e-5);
 }
 
 TEST_F(RecordingTools, TimesThatRunBackAreToldOnceAndCounted)

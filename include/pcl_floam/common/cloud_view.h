@@ -50,7 +50,7 @@ struct CloudView {
   [[nodiscard]] float x(std::size_t i) const { return readFloat(point(i) + x_offset); }
   [[nodiscard]] float y(std::size_t i) const { return readFloat(point(i) + y_offset); }
   [[nodiscard]] float z(std::size_t i) const { return readFloat(point(i) + z_offset); }
-  /// 0 without the field, or where it is not finite.
+  /// 0 without the field, or where it is no number that float32 can hold.
   [[nodiscard]] float intensityOf(std::size_t i) const;
   [[nodiscard]] bool isOrganized() const { return height > 1; }
 
@@ -61,6 +61,9 @@ struct CloudView {
     return value;
   }
 };
+
+/// Whether a field of that name holds the points' times.
+[[nodiscard]] bool isTimeField(std::string_view name);
 
 /// Fills the field offsets of \p view from PCL's list of fields.
 /// \throws std::invalid_argument if x, y or z is missing or not float32.

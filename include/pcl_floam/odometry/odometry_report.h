@@ -42,11 +42,12 @@ struct OdometryReport {
   /// first scan have turned out to be wrong, and this one jumps. Empty otherwise.
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
-  /// Seconds from the scan's stamp to that instant, as the points' times tell; 0 if they have none.
+  /// Seconds from the scan's stamp to that instant, as the points' times tell; 0 if they have none. Of a scan that is
+  /// missing as of the one before.
   double since_stamp = 0.0;
   /// The first two scans did not tell how the sensor moved (fast, among traffic; without times), and several tracks are
   /// followed: the poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at
-  /// the latest.
+  /// the latest, or at the 24th where only the points' times are left to be found out.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -23,8 +24,16 @@ bool endsWith(std::string_view text, std::string_view ending)
 bool isRecording(const fs::path& file)
 {
   const std::string name = file.filename().string();
-  return endsWith(name, ".bag") || endsWith(name, ".mcap") || endsWith(name, ".db3") || endsWith(name, ".mcap.zstd") ||
+  return endsWith(name, ".mcap") || endsWith(name, ".db3") || endsWith(name, ".mcap.zstd") ||
          endsWith(name, ".db3.zstd");
+}
+
+/// Of ROS 1; not what reindexing left of one.
+bool isBag(const fs::directory_entry& entry)
+{
+  const std::string name = entry.path().filename().string();
+  std::error_code error;
+  return endsWith(name, ".bag") && !endsWith(name, ".orig.bag") && entry.is_regular_file(error);
 }
 
 std::string_view withoutQuotes(std::string_view word)
@@ -83,10 +92,18 @@ std::vector<fs::path> rosbag2Files(const fs::path& folder)
   if (!files.empty()) {
     return files;
   }
+  std::vector<fs::path> bags;
+  bool has_scans = false;
   for (fs::directory_iterator entries(folder, error), end; !error && entries != end; entries.increment(error)) {
     if (isRecording(entries->path())) {
       files.push_back(entries->path());
+    } else if (isBag(*entries)) {
+      bags.push_back(entries->path());
     }
+    has_scans |= entries->path().extension() == ".pcd" || entries->path().extension() == ".bin";
+  }
+  if (files.empty() && !has_scans) {  // else scans that were taken out of a bag lie beside it
+    files = std::move(bags);
   }
   std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
     return naturallyBefore(a.filename().string(), b.filename().string());

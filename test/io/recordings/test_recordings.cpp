@@ -265,6 +265,10 @@ TEST_F(Bags, AFolderOfTheirPartsIsOneRecording)
   ASSERT_EQ(scans.size(), 2U);
   EXPECT_EQ(scans.path(0).filename(), "drive_9.bag");
   EXPECT_EQ(scans.path(1).filename(), "drive_10.bag");
+  folder.write("parts/drive_9.orig.bag", whole);
+  EXPECT_EQ(ScanSource(folder.path() / "parts").size(), 2U) << "what reindexing leaves";
+  folder.write("parts/0.bin", std::string(16, 'x'));
+  EXPECT_EQ(ScanSource(folder.path() / "parts").format(), ScanFormat::kitti_bin) << "taken out of the bag";
 }
 
 TEST_F(Bags, AChunkThatIsNotAsItsHeaderSaysIsTold)
