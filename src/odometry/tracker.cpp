@@ -34,10 +34,8 @@ constexpr std::ptrdiff_t kMostHypotheses = 4;
 
 std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 {
-  std::vector<SE3> middles;
-  for (const SweepPose& pose : poses) {
-    middles.push_back(pose.middle);
-  }
+  std::vector<SE3> middles(poses.size());
+  std::transform(poses.begin(), poses.end(), middles.begin(), [](const SweepPose& pose) { return pose.middle; });
   return middles;
 }
 
