@@ -115,6 +115,7 @@ public:
     }
     return stamps;
   }
+  [[nodiscard]] const OdometryParameters& parameters() const { return odometry_.parameters(); }
   [[nodiscard]] pcl::PCLPointCloud2& cloud() { return cloud_; }
 
 private:
@@ -180,6 +181,22 @@ private:
   std::optional<double> last_stamp_;
 };
 
+/// Scans of which at most the last can be read.
+void track(const std::vector<std::size_t>& scans, bool is_last_read, ScanTracker& tracker, PoseClock& clock,
+           ResultWriter& writer, ScanSaver& saver)
+{
+  const std::vector<double> times = clock.timesOf(tracker.stampsOf(scans));
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    const bool is_read = is_last_read && k + 1 == scans.size();
+    const OdometryReport& report = is_read ? tracker.track(scans[k]) : tracker.miss(scans[k]);
+    const double time = times[k] + report.since_stamp;
+    writer.write(scans[k], time, report);
+    if (is_read) {
+      saver.save(scans[k], time, tracker.cloud(), report, tracker.parameters());
+    }
+  }
+}
+
 }  // namespace
 
 bool RunResult::isComplete() const
@@ -225,37 +242,28 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
     progress.message(times_problem);
   }
   PoseClock clock(odometry.parameters().scan_period, range.first);
-  std::vector<std::size_t> missing;
-  try {
+  const auto unlessDiskIsFull = [&](const auto& step) {
+    try {
+      step();
+    } catch (const FileError& error) {
+      result.output_problem = error.what();
+      progress.message(result.output_problem);
+    }
+  };
+  unlessDiskIsFull([&] {
+    std::vector<std::size_t> waiting;
     for (std::size_t i = 0; i < range.count && interruptedBy() == 0; ++i) {
-      missing.push_back(range.first + i);
-      const bool is_read = tracker.read(missing.back());
+      waiting.push_back(range.first + i);
+      const bool is_read = tracker.read(waiting.back());
       // Where a recording is cut off, there need not have been another scan.
       if (is_read || !isRecording(scans)) {
-        const std::vector<double> times = clock.timesOf(tracker.stampsOf(missing));
-        for (std::size_t k = 0; k < missing.size(); ++k) {
-          const bool is_there = is_read && k + 1 == missing.size();
-          const OdometryReport& report = is_there ? tracker.track(missing[k]) : tracker.miss(missing[k]);
-          const double time = times[k] + report.since_stamp;
-          writer.write(missing[k], time, report);
-          if (is_there) {
-            saver.save(missing[k], time, tracker.cloud(), report, odometry.parameters());
-          }
-        }
-        missing.clear();
+        track(waiting, is_read, tracker, clock, writer, saver);
+        waiting.clear();
       }
       progress.update(i + 1);
     }
-  } catch (const FileError& error) {
-    result.output_problem = error.what();
-    progress.message(result.output_problem);
-  }
-  try {
-    saver.finish();
-  } catch (const FileError& error) {
-    result.output_problem = error.what();
-    progress.message(result.output_problem);
-  }
+  });
+  unlessDiskIsFull([&] { saver.finish(); });
   tracker.finish();
   for (const StampedPose& pose : writer.written()) {
     result.poses.push_back(pose.world_T_sensor);

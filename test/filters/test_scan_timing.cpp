@@ -135,6 +135,28 @@ TEST(ScanTiming, WhatSeesLessThanHalfATurnNeedNotTurn)
   EXPECT_EQ(timingOf(viewOf(cloud), ScanTimingSource::azimuth).source, ScanTimingSource::azimuth);
 }
 
+/// Such a cloud's order tells which way the head turns, but not when.
+TEST(ScanTiming, PointsMayBeStoredChannelByChannel)
+{
+  const auto sweep = sweepRoom(Room(), smallLidar());
+  constexpr std::size_t kChannels = 16;
+  auto returns = sweep;
+  returns.clear();
+  for (std::size_t channel = 0; channel < kChannels; ++channel) {
+    for (std::size_t i = channel; i < sweep.size(); i += kChannels) {
+      returns.push_back(sweep[i]);
+    }
+  }
+  const auto cloud = cloudWithTimes<float>(returns, "time", 0.0, 0.0);
+  const ScanTiming timing = timingOf(viewOf(cloud));
+  ASSERT_EQ(timing.source, ScanTimingSource::azimuth);
+  std::size_t off = 0;
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    off += std::abs(static_cast<double>(timing.at(viewOf(cloud), i)) - returns[i].fraction) > 0.02 ? 1 : 0;
+  }
+  EXPECT_LT(off, returns.size() / 20) << "but where the sweep closes";
+}
+
 TEST(ScanTiming, AllThreadsFindTheSame)
 {
   const auto returns = sweepRoom(Room(), smallLidar());

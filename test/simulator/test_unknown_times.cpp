@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(All, UnknownTimes,
                                                                                                     : "NotAtAll");
                          });
 
-/// Nor does it say so.
+/// It sees less than half a turn, and has no times.
 TEST(FlashLidar, IsFoundToHaveNoSweep)
 {
   SimulationOptions options = simulated("room", 43);

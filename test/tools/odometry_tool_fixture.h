@@ -64,6 +64,15 @@ protected:
     return std::count(content.begin(), content.end(), '\n');
   }
 
+  /// Every scan has a true pose, and its own is near that.
+  void expectAllJudgedBy(const std::string& truth) const
+  {
+    const Outcome outcome = odometry("scans -o result --ground-truth " + truth + " --plot none");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(summary()["accuracy"]["poses"], kScans);
+    EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+  }
+
   TemporaryFolder folder;
 };
 

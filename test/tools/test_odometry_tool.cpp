@@ -162,10 +162,7 @@ TEST_F(OdometryTool, TruthWithTimesIsFoundByTime)
   }
   folder.write("times.txt", times);
   folder.write("truth.tum.txt", truth);
-  const Outcome outcome = odometry("scans -o result --ground-truth truth.tum.txt --plot none");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(summary()["accuracy"]["poses"], kScans);
-  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+  expectAllJudgedBy("truth.tum.txt");
 }
 
 /// Numbers of frames, as some write them in the place of times.
@@ -179,10 +176,7 @@ TEST_F(OdometryTool, TruthOfOtherTimesIsTakenByNumber)
   }
   folder.write("times.txt", times);
   folder.write("truth.tum.txt", truth);
-  const Outcome outcome = odometry("scans -o result --ground-truth truth.tum.txt --plot none");
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(summary()["accuracy"]["poses"], kScans);
-  EXPECT_LT(summary()["accuracy"]["ate"]["position_m"]["max"].get<double>(), 0.05);
+  expectAllJudgedBy("truth.tum.txt");
 }
 
 TEST_F(OdometryTool, ABadGridIsRefusedBeforeTheRun)

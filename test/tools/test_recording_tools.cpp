@@ -18,15 +18,19 @@ protected:
   RecordingTools()
   {
     for (std::size_t i = 0; i < kScans; ++i) {
-      test::CloudShape shape;
-      shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
-      shape.point_step = 16;
-      shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
-      test::MessageBytes message(true);
-      messages.push_back(test::pointCloud2(shape, message, 1700000000, static_cast<std::uint32_t>(i * 100000000)));
+      messages.push_back(messageOf(i, i));
     }
     whole = test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", messages);
     folder.write("drive.mcap", whole);
+  }
+  [[nodiscard]] std::string messageOf(std::size_t scan, std::size_t tenths_of_a_second) const
+  {
+    test::CloudShape shape;
+    shape.data = contentOf(folder.path() / "scans" / (std::to_string(scan) + ".bin"));
+    shape.point_step = 16;
+    shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
+    test::MessageBytes message(true);
+    return test::pointCloud2(shape, message, 1700000000, static_cast<std::uint32_t>(tenths_of_a_second * 100000000));
   }
   [[nodiscard]] Outcome convert(const std::string& arguments) const { return run(PCL_FLOAM_CONVERT, arguments); }
   std::vector<std::string> messages;
@@ -130,15 +134,10 @@ TEST_F(RecordingTools, AScanThatCannotBeReadStandsBetweenTheTimesOfItsNeighbours
 
 TEST_F(RecordingTools, TimesAreGuessedBetweenThoseThatAreKnown)
 {
-  const std::vector<std::uint32_t> tenths = {0, 1, 3, 4, 6, 7, 8, 9};
+  const std::vector<std::size_t> tenths = {0, 1, 3, 4, 6, 7, 8, 9};
   std::vector<std::string> uneven;
   for (std::size_t i = 0; i < kScans; ++i) {
-    test::CloudShape shape;
-    shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
-    shape.point_step = 16;
-    shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
-    test::MessageBytes message(true);
-    uneven.push_back(test::pointCloud2(shape, message, 1700000000, tenths[i] * 100000000));
+    uneven.push_back(messageOf(i, tenths[i]));
   }
   uneven[0].resize(30);
   uneven[3].resize(30);
@@ -156,12 +155,7 @@ TEST_F(RecordingTools, TimesThatStandStillAreNone)
 {
   std::vector<std::string> still;
   for (std::size_t i = 0; i < kScans; ++i) {
-    test::CloudShape shape;
-    shape.data = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
-    shape.point_step = 16;
-    shape.width = static_cast<std::uint32_t>(shape.data.size() / 16);
-    test::MessageBytes message(true);
-    still.push_back(test::pointCloud2(shape, message, 1700000000, 0));
+    still.push_back(messageOf(i, 0));
   }
   folder.write("drive.mcap", test::mcapFile("sensor_msgs/msg/PointCloud2", "cdr", still));
   EXPECT_EQ(odometry("drive.mcap -o result --plot none -q").status, 0);

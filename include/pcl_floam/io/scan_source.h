@@ -69,8 +69,7 @@ struct ScanSourceOptions {
 ///   scans its subfolder `velodyne` or `velodyne_points/data` is taken: a sequence of KITTI's;
 /// - one such file;
 /// - an MCAP file, a rosbag of ROS 1 or a folder of the parts that it was split into, a rosbag2's folder or a `.db3`
-/// file of it, with messages of the types PointCloud2,
-///   Livox' CustomMsg, or VelodyneScan;
+///   file of it, with messages of the types PointCloud2, Livox' CustomMsg, or VelodyneScan;
 /// - a pcap or pcapng file with packets of a Velodyne VLP-16, HDL-32E or HDL-64E (S2, S3).
 ///
 /// What it is, its first bytes tell, not its name. Formats whose library was missing when pcl_floam was built are
