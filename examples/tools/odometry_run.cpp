@@ -122,8 +122,21 @@ private:
   void note(std::size_t scan, const OdometryReport& report)
   {
     result_.scans.push_back(scan);
-    ++result_.states[static_cast<std::size_t>(report.state)];
+    ++result_.count(report.state);
+    if (isUndecided(report)) {
+      ++undecided_;
+    } else if (!report.provisional) {  // it is plain now, and what was given out before is corrected
+      result_.count(TrackingState::doubtful) -= undecided_;
+      result_.count(TrackingState::tracked) += undecided_;
+      undecided_ = 0;
+    }
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
+  }
+
+  /// Doubtful as long as it is open how the sensor began to move.
+  static bool isUndecided(const OdometryReport& report)
+  {
+    return report.provisional && report.state == TrackingState::doubtful;
   }
 
   void takeStamp(std::size_t scan)
@@ -150,7 +163,7 @@ private:
     const std::string file = (scans_.path(scan).parent_path() / scans_.name(scan)).string();
     if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
       progress_.message(file + ": not tracked: " + report.reason);
-    } else if (report.state == TrackingState::doubtful) {
+    } else if (report.state == TrackingState::doubtful && !isUndecided(report)) {
       progress_.message(file + ": doubtful: " + report.reason);
     } else if (!report.corrected_poses.empty() && !report.reason.empty()) {
       progress_.message(file + ": only now it is plain how the sensor moved: " +
@@ -176,6 +189,7 @@ private:
   ProgressBar& progress_;
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
+  std::size_t undecided_ = 0;
   std::size_t late_ = 0;  ///< scans whose time is not after the one before
   std::optional<double> stamp_;
   std::optional<double> last_stamp_;

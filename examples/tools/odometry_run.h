@@ -37,6 +37,7 @@ struct RunResult {
   std::string output_problem;  ///< why an output could not be written; the run ends with it
 
   [[nodiscard]] std::size_t count(TrackingState state) const { return states[static_cast<std::size_t>(state)]; }
+  [[nodiscard]] std::size_t& count(TrackingState state) { return states[static_cast<std::size_t>(state)]; }
   /// Every scan was read and tracked.
   [[nodiscard]] bool isComplete() const;
 };

@@ -18,17 +18,24 @@ struct FirstMotion {
   double evidence = 0.0;
 };
 
-/// The direction along which the position is known least; zero if that cannot be told.
-Eigen::Vector3d leastKnown(const Matrix6& information)
+/// The directions along which the position is hardly known, the worst first; none if that cannot be told. Rings that
+/// seem to know the way along hide it on an open road, so what is known little better is looked along, too.
+std::vector<Eigen::Vector3d> hardlyKnown(const Matrix6& information)
 {
+  constexpr double kLittleBetter = 10.0;
   const Eigen::Matrix<double, 6, 6> h = information;
   const Eigen::Matrix3d translation = h.topLeftCorner<3, 3>() - h.topRightCorner<3, 3>() *
                                                                     h.bottomRightCorner<3, 3>().inverse() *
                                                                     h.bottomLeftCorner<3, 3>();
   if (!translation.allFinite()) {
-    return Eigen::Vector3d::Zero();
+    return {};
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(translation).eigenvectors().col(0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(translation);
+  std::vector<Eigen::Vector3d> directions = {solver.eigenvectors().col(0)};
+  if (solver.eigenvalues()[1] < kLittleBetter * solver.eigenvalues()[0]) {
+    directions.emplace_back(solver.eigenvectors().col(1));
+  }
+  return directions;
 }
 
 /// As many points as tell which motions are likely.
@@ -42,6 +49,7 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   sampling.sample(sweep.edges, side, thin.edges);
   thin.periods = sweep.periods;
   thin.fraction = sweep.fraction;
+  thin.axis = sweep.axis;
   thin.is_direction_known = sweep.is_direction_known;
   thin.hint = sweep.hint;
   return thin;
@@ -84,19 +92,21 @@ private:
   Sweep second_;
 };
 
-/// Along the open direction both ways, and as it is told.
-std::vector<FirstLook> looksAlong(const Eigen::Vector3d& open, const Sweep& second)
+/// Along the open directions both ways, and as it is told.
+std::vector<FirstLook> looksAlong(const std::vector<Eigen::Vector3d>& open, const Sweep& second)
 {
   constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
   std::vector<FirstLook> looks;
   if (second.hint) {
     looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
   }
-  for (int step = 1; step * kNear <= kFastest * second.periods; ++step) {
-    for (const double sign : {1.0, -1.0}) {
-      Vector6 velocity = Vector6::Zero();
-      velocity.head<3>() = sign * step * kNear / second.periods * open;
-      looks.push_back({velocity, kNear, 1});
+  for (const Eigen::Vector3d& direction : open) {
+    for (int step = 1; step * kNear <= kFastest * second.periods; ++step) {
+      for (const double sign : {1.0, -1.0}) {
+        Vector6 velocity = Vector6::Zero();
+        velocity.head<3>() = sign * step * kNear / second.periods * direction;
+        looks.push_back({velocity, kNear, 1});
+      }
     }
   }
   return looks;
@@ -109,7 +119,7 @@ std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
   std::stable_sort(motions.begin(), motions.end(),
                    [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
   constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
+  constexpr double kHopeless = 40.0;  // of thinned sweeps
   std::vector<Vector6> likely;
   for (const FirstMotion& motion : motions) {
     const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const Vector6& other) {
@@ -135,9 +145,10 @@ FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const T
   if (motions.empty()) {
     return {};
   }
-  const Eigen::Vector3d open = leastKnown(information);
+  const std::vector<Eigen::Vector3d> open = hardlyKnown(information);
   sweeps.lookAt(looksAlong(open, second), motions);
-  return {likeliest(std::move(motions), kNear / second.periods), open};
+  return {likeliest(std::move(motions), kNear / second.periods),
+          open.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : open.front()};
 }
 
 }  // namespace pcl_floam

@@ -16,14 +16,15 @@ namespace {
 constexpr double kCellsPerRoot = 12.0;
 /// Points of one sweep enter the map no closer together than this part of its finest cells' side.
 constexpr double kMapSpacing = 0.3;
-/// Sweeps until it is decided how it began.
+/// Sweeps until it is decided how it began, if one motion is left by then, and else.
 constexpr std::size_t kFirstSweeps = 12;
+constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
 /// A track whose evidence is so much less than the best one's is given up: false ones lead by less while the map is
 /// young, and fall behind by more where a scene is clear.
-constexpr double kHopeless = 200.0;
+constexpr double kHopeless = 150.0;
 
 /// The same of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or so, in
-/// which nothing else differs, maps included.
+/// which nothing else differs, maps included. Motions of which one explains that much more have left a trace.
 constexpr double kWrongDirection = 15.0;
 
 /// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.
@@ -40,6 +41,13 @@ std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 }
 
 }  // namespace
+
+bool Tracker::hasRivals() const
+{
+  return is_open_ && std::count_if(hypotheses_.begin(), hypotheses_.end(), [this](const Hypothesis& other) {
+                       return other.direction() == hypotheses_.front().direction();
+                     }) > 1;
+}
 
 double Tracker::Hypothesis::evidence() const
 {
@@ -210,7 +218,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   }
   kept_ = {first_, sweep};
   is_open_ = may_correct_ = true;
-  giveUpHopeless();
+  giveUp(kHopeless);
   first_ = {};
   outcome.registration = hypotheses_.front().last;
   outcome.corrected = true;
@@ -264,12 +272,12 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
     return;
   }
   const std::size_t before = hypotheses_.front().number;
-  giveUpHopeless();
+  giveUp(is_open_ ? kHopeless : kWrongDirection);
   outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = may_correct_ && outcome.changed_track;
   if (is_open_) {
     kept_.push_back(sweep);
-    if (kept_.size() == kFirstSweeps) {
+    if (kept_.size() >= (hasRivals() ? kMostFirstSweeps : kFirstSweeps)) {
       settle();
       outcome.corrected = true;
     }
@@ -307,14 +315,13 @@ bool Tracker::stepAll(const Sweep& sweep)
 
 /// Those that match no more or have fallen behind, but for the best few. No direction of time falls behind before it is
 /// settled how the sensor began to move.
-void Tracker::giveUpHopeless()
+void Tracker::giveUp(double behind)
 {
   std::stable_sort(hypotheses_.begin(), hypotheses_.end(), isLikelier);
   for (std::size_t i = hypotheses_.size(); i-- > 1;) {
     const auto here = hypotheses_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == here->direction(); };
     const auto best = is_open_ ? std::find_if(hypotheses_.begin(), here, isOfSameDirection) : hypotheses_.begin();
-    const double behind = is_open_ ? kHopeless : kWrongDirection;
     if (here->is_lost || here->evidence() < best->evidence() - behind ||
         std::count_if(hypotheses_.begin(), here, isOfSameDirection) >= kMostHypotheses) {
       hypotheses_.erase(here);
@@ -323,12 +330,13 @@ void Tracker::giveUpHopeless()
 }
 
 /// The best hypotheses stay, their first sweeps where their last ones say they were. Where a motion leaves no trace,
-/// none is as good as any.
+/// the least is as good as any.
 void Tracker::settle()
 {
   const bool is_told =
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
   const bool leaves_no_trace = !hypotheses_.front().last.report.weak_directions.empty() && !is_told;
+  giveUp(leaves_no_trace ? kWrongDirection : kHopeless);
   keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
   std::vector<std::vector<SE3>> poses(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {

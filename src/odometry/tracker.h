@@ -44,6 +44,8 @@ public:
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether it is not decided yet how the sensor began to move.
   [[nodiscard]] bool isOpen() const { return is_open_; }
+  /// Whether the sensor may as well have begun to move otherwise.
+  [[nodiscard]] bool hasRivals() const;
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
   /// Whether they may since several motions are followed.
@@ -78,7 +80,7 @@ private:
   void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
   void followUp(const Sweep& sweep, Outcome& outcome);
   bool stepAll(const Sweep& sweep);
-  void giveUpHopeless();
+  void giveUp(double behind);
   void settle();
   void settle(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
               bool leaves_no_trace) const;

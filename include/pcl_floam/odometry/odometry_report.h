@@ -19,7 +19,8 @@ namespace pcl_floam {
 enum class TrackingState : std::uint8_t {
   initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
   tracked,      ///< registered with the map
-  doubtful,     ///< registered, but the map has no surface for most of the scan: the pose may be wrong (by surfaces)
+  doubtful,     ///< registered, but the map has no surface for most of the scan, or several motions explain the first
+                ///< scans: the pose may be wrong (by surfaces)
   predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
   not_started   ///< no usable scan yet: the pose is the initial pose
 };
@@ -46,8 +47,9 @@ struct OdometryReport {
   /// missing as of the one before.
   double since_stamp = 0.0;
   /// The first two scans did not tell how the sensor moved (fast, among traffic; without times), and several tracks are
-  /// followed: the poses since then may yet be corrected, by more than `covariance` tells. Ends at the twelfth scan at
-  /// the latest, or at the 24th where only the points' times are left to be found out.
+  /// followed: the poses since then may yet be corrected, by more than `covariance` tells. Ends at the 48th scan at the
+  /// latest; mostly long before, as soon as one motion is left, and at the 24th where only the points' times are left
+  /// to be found out.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
