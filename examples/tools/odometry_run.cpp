@@ -123,6 +123,7 @@ private:
   {
     result_.scans.push_back(scan);
     ++result_.states[static_cast<std::size_t>(report.state)];
+    result_.provisional += report.provisional ? 1 : 0;
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
   }
 
