@@ -84,7 +84,7 @@ set output '{options.output / name}.png'
 set title "{title}"
 set border 3
 set tics nomirror
-set grid lc rgb '#e0e0e0'
+set grid xtics ytics lc rgb '#e0e0e0'
 set xlabel '{axes[0]}'
 set ylabel '{axes[1]}'
 set xrange [-1:101]
