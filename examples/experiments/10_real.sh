@@ -166,7 +166,7 @@ def compared(name):
             found = ratio(real_run.figures[key], median)
             if found is not None:
                 yield [name, real_run.label, title, number(real_run.figures[key], digits, factor),
-                       number(median, digits, factor), number(found, 2),
+                       number(median, digits, factor), number(found, 3),
                        "yes" if 1.0 / ALIKE <= found <= ALIKE else "**no**"]
 
 

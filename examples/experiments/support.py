@@ -185,7 +185,7 @@ class Run:
 
     def _median_time(self):
         file = self.folder / "timing.csv"
-        rows = list(csv.DictReader(file.open())) if file.exists() else []
+        rows = list(csv.DictReader(file.read_text().splitlines())) if file.exists() else []
         return {"ms": statistics.median(float(row["total_ms"]) for row in rows)} if rows else {}
 
     def copy_picture(self, target):
