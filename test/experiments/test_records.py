@@ -40,6 +40,13 @@ class RunRecords(unittest.TestCase):
         self.assertEqual(len((self.folder / "records.jsonl").read_text().splitlines()), 3)
         self.assertIsNone(kept.find("c"))
 
+    def test_a_record_that_was_just_made_counts_as_well(self):
+        kept = records.Records(self.folder, "01_warehouse")
+        self.assertEqual(kept.origin(), "Runs: none")
+        kept.add("a", label="defaults", data={}, figures={"ate": 0.5})
+        self.assertEqual(kept.find("a")["figures"]["ate"], 0.5)
+        self.assertTrue(kept.origin().startswith("Runs: 1 of commit"))
+
     def test_other_experiments_in_the_same_folder_stay_apart(self):
         self.add("a", 0.5, "02_room")
         self.assertIsNone(records.Records(self.folder, "01_warehouse").find("a"))
