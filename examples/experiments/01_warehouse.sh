@@ -3,7 +3,6 @@
 #
 #   bash examples/experiments/01_warehouse.sh [--quick] [--data DIR] [--output DIR]
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
-import shutil
 from support import *
 
 options = Options("01_warehouse", "trajectory in the warehouse against ground truth")
@@ -15,7 +14,7 @@ for seed, run in zip(seeds, runs):
     f = run.figures
     rows.append([seed, number(f["path"], 0), number(f["ate"], 2, 100), number(f["mean_error"], 2, 100),
                  number(f["t_rel"], 3), number(f["r_rel"], 3), number(f["ms"], 1)])
-    shutil.copy(run.folder / "trajectory.png", options.output / f"warehouse_seed{seed}.png")
+    run.copy_picture(options.output / f"warehouse_seed{seed}.png")
 publish(options, [("warehouse", "Warehouse, VLP-16", ["seed", "path / m", "ATE rms / cm", "mean error / cm", "t_rel / %",
                                                      "r_rel / °/100 m", "ms per scan"], rows)])
 PYTHON

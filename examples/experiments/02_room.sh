@@ -3,7 +3,6 @@
 #
 #   bash examples/experiments/02_room.sh [--quick] [--data DIR] [--output DIR]
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
-import shutil
 from support import *
 
 options = Options("02_room", "mean localisation error in a room")
@@ -15,6 +14,6 @@ for seed, run in zip(seeds, runs):
     f = run.figures
     rows.append([f"simulated, seed {seed}", number(f["path"], 0), number(f["mean_error"], 2, 100),
                  number(f["ate"], 2, 100), number(f["ms"], 1)])
-    shutil.copy(run.folder / "trajectory.png", options.output / f"room_seed{seed}.png")
+    run.copy_picture(options.output / f"room_seed{seed}.png")
 publish(options, [("room", "Room, VLP-16", ["", "path / m", "mean error / cm", "ATE rms / cm", "ms per scan"], rows)])
 PYTHON

@@ -5,23 +5,33 @@
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
 from support import *
 
+DEFAULT = ", default"
+
+
+def known_modes(options):
+    if options.tables_only:
+        return options.records.labels()
+    default = default_compensation(options)
+    return [mode + DEFAULT if mode == default else mode for mode in compensation_modes(options)]
+
+
 options = Options("03_ablation", "modes of motion compensation: accuracy and time")
 worlds = [("warehouse", "vlp16"), ("urban", "hdl64"), ("handheld", "vlp16")]
 count = {"warehouse": 120, "urban": 40, "handheld": 100} if options.quick else {}
 seed = 21
 data = simulate(options, [(world, sensor, seed, count.get(world, 0), []) for world, sensor in worlds])
 names = {"none": "none", "loam": "iterative (LOAM)", "two-stage": "two-stage (paper)"}
-modes = sorted(compensation_modes(options), key=lambda mode: (mode not in names, list(names).index(mode)
-                                                              if mode in names else 0))
-default = default_compensation(options)
-runs = {mode: execute(options, [Run(d, mode, ["--compensation", mode]) for d in data], timed=True) for mode in modes}
+order = {mode: i for i, mode in enumerate(names)}
+modes = sorted(known_modes(options), key=lambda mode: order.get(mode.removesuffix(DEFAULT), len(order)))
+runs = {mode: execute(options, [Run(d, mode, ["--compensation", mode.removesuffix(DEFAULT)]) for d in data], timed=True)
+        for mode in modes}
 
 header = ["compensation"]
 for world, _ in worlds:
     header += [f"{world}: ATE / cm", "t_rel / %", "ms per scan"]
 rows = []
 for mode in modes:
-    row = [names.get(mode, mode) + (", default" if mode == default else "")]
+    row = [names.get(mode, mode)]
     for run in runs[mode]:
         row += [number(run.figures["ate"], 2, 100), number(run.figures["t_rel"], 3), number(run.figures["ms"], 1)]
     rows.append(row)

@@ -14,9 +14,10 @@ if options.quick:
     plans = [("warehouse", "vlp16", 11, 60, []), ("handheld", "vlp16", 12, 60, [])]
 data = simulate(options, plans)
 names = [f"{world} {sensor}" for world, sensor, *_ in plans]
-real = pathlib.Path(os.environ.get("PCL_FLOAM_DATA", HERE / "../shared/data")).resolve() / "kitti_raw_0001"
-if real.is_dir() and not options.quick:
-    data.insert(0, Dataset("kitti-0001", real / "velodyne", real / "poses.txt",
+real = real_data("kitti_raw_0001")
+with_real = "kitti-0001" in options.records.of_data("name") if options.tables_only else real.is_dir()
+if with_real and not options.quick:
+    data.insert(0, Dataset("kitti-0001", real / "velodyne", real / "poses.txt", sensor="hdl64",
                            odometry_options=["--vertical-correction", "0.205"]))
     names.insert(0, "KITTI raw 0001")
 

@@ -54,21 +54,22 @@ def across(run):
     return math.sqrt(max(worst))
 
 
-def figure(run, key):
-    if key != "across":
-        return run.figures[key]
-    return across(run) if run.figures["ate"] is not None else None
+def judge(run):
+    has_result = (run.folder / "poses.kitti.txt").exists() and run.data.description["world"] == "tunnel"
+    return {"across": across(run)} if has_result else {}
 
 
 def cell(runs, key):
     _, factor, digits = UNIT[key]
-    return " ".join(number(figure(run, key), digits, factor) for run in runs)
+    return " ".join(number(run.figures[key], digits, factor) for run in runs)
 
 
 options = Options("07_robustness", "all worlds, seeds, sensors; PCL's GICP and NDT beside", arguments)
 worlds = options.arguments.subset.split(",")
 variants = options.arguments.variants.split(",")
 seeds = [int(s) for s in options.arguments.seeds.split(",")][:1 if options.quick else None]
+if options.tables_only and options.records.all():
+    seeds, variants = sorted(options.records.of_data("seed")), list(VARIANTS)
 table, chart = [], {}
 for world in worlds:
     usual, key, target, quick = WORLDS[world]
@@ -79,17 +80,18 @@ for world in worlds:
         data = simulate(options, [(world, sensor or usual, seed, quick if options.quick else 0, extra)
                                   for seed in seeds])
         if variant == "half-blind":
-            for d in data:  # the last return, the sweep's end for the odometry, is a third of a turn before the turn's
-                d.truth = d.truth_middle
-                d.odometry_options += ["--pose-instant", "middle"]
+            for d in data:  # the last return is a third of a turn before the turn's end
+                d.judge_at_the_middle()
         plans = [("pcl_floam", None)]
         plans += [("GICP", "gicp"), ("NDT", "ndt")] if variant == "plain" and not options.arguments.no_pcl else []
         coarse = ["--leaf", "0.5", "--resolution", "2.0"] if key == "t_rel" else []
-        results = execute(options, [Run(d, label, coarse if method else [], method)
+        results = execute(options, [Run(d, label, coarse if method else [], method, judge)
                                     for label, method in plans for d in data])
+        if options.tables_only and not any(run.is_recorded for run in results):
+            continue
         parts = [results[i * len(data):(i + 1) * len(data)] for i in range(len(plans))]
         allowed = target * (1 if variant == "plain" else 2)
-        found = [figure(run, key) for run in parts[0]]
+        found = [run.figures[key] for run in parts[0]]
         held = all(f is not None and f <= allowed for f in found)
         unit, factor, digits = UNIT[key]
         name = NAMES.get(variant, sensor)

@@ -21,11 +21,14 @@ def motions(rows):
         yield [sum(before[4 * i + k] * step[i] for i in range(3)) for k in range(3)]
 
 
-def is_lost(run):
+def judge(run):
+    if not (run.folder / "poses.kitti.txt").exists():
+        return {"lost": True}
     estimate, truth = (list(motions(positions(file)[0])) for file in (run.folder / "poses.kitti.txt", run.data.truth))
     if len(estimate) != len(truth):
-        return True
-    return statistics.median(math.dist(e, t) for e, t in zip(estimate[-5:], truth[-5:])) > LOST
+        return {"lost": True}
+    off = statistics.median(math.dist(e, t) for e, t in zip(estimate[-5:], truth[-5:]))
+    return {"off_at_the_end": off, "lost": off > LOST}
 
 
 options = Options("08_starts", "starts in traffic",
@@ -35,8 +38,8 @@ for name, (seeds, times, extra) in STARTS.items():
     for sensor in options.arguments.sensors.split(","):
         cases = [(seed, time) for seed in seeds for time in times][:2 if options.quick else None]
         data = simulate(options, [("highway", sensor, seed, SCANS, ["--start", time] + extra) for seed, time in cases])
-        runs = execute(options, [Run(d, "defaults") for d in data])
-        lost = [f"seed {seed} at {time} s" for (seed, time), run in zip(cases, runs) if is_lost(run)]
-        table.append([name, sensor, len(runs), len(lost), ", ".join(lost)])
+        runs = execute(options, [Run(d, "defaults", judge=judge) for d in data])
+        lost = [f"seed {seed} at {time} s" for (seed, time), run in zip(cases, runs) if run.figures["lost"]]
+        table.append([name, sensor, sum(run.is_recorded for run in runs), len(lost), ", ".join(lost)])
 publish(options, [("starts", "Starts on a highway, 18 scans each", ["start", "sensor", "starts", "lost", "which"], table)])
 PYTHON

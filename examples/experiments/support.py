@@ -1,10 +1,12 @@
-"""What the experiments share: options, simulated data, runs, judgement, tables, pictures. Python's library only.
+"""What the experiments share: options, simulated data, runs and their judgement. Python's library only.
 
-Simulated scans are kept in the data folder and made once. A result is kept as long as it is newer than its program,
-so that an experiment that was stopped goes on where it was, and one whose program was rebuilt starts afresh.
+Simulated scans are kept in the data folder and made once. A result is kept as long as its record (records.py) is newer
+than its program, so that an experiment that was stopped goes on where it was, and one whose program was rebuilt starts
+afresh. With --tables nothing is run: tables show what the records have.
 """
 
 import argparse
+import collections
 import concurrent.futures
 import csv
 import json
@@ -17,28 +19,34 @@ import subprocess
 import sys
 import tempfile
 
-HERE = pathlib.Path(__file__).resolve().parents[2]
+from pictures import bar_chart, curves, draw, log, markdown, number, publish
+from records import HERE, Records, finite, time_of
+
+USUAL_FOLDER = pathlib.Path(os.environ.get("TMPDIR", "/tmp")) / "pcl_floam_experiments"
 
 
 class Options:
     """The command line that all experiments have; further arguments by `add`, a function of the parser."""
 
     def __init__(self, name, description, add=None):
-        cache = pathlib.Path(os.environ.get("TMPDIR", "/tmp")) / "pcl_floam_experiments"
         parser = argparse.ArgumentParser(prog=name + ".sh", description=description)
         parser.add_argument("--quick", action="store_true", help="short runs, to see that all works")
-        parser.add_argument("--data", type=pathlib.Path, default=cache / "data", help="cache of simulated scans")
-        parser.add_argument("--output", type=pathlib.Path, default=cache / name, help="tables, pictures, results")
+        parser.add_argument("--data", type=pathlib.Path, default=USUAL_FOLDER / "data", help="cache of simulated scans")
+        parser.add_argument("--output", type=pathlib.Path, default=USUAL_FOLDER / name, help="tables, pictures, results")
         parser.add_argument("--bin", type=pathlib.Path, default=HERE / "build/demo/bin", help="folder of the tools")
         parser.add_argument("--jobs", type=int, default=2, help="runs at a time, where no time is measured")
+        parser.add_argument("--tables", action="store_true", help="run nothing, print the tables of the records")
+        parser.add_argument("--commit", help="with --tables: only of records whose commit begins so")
         if add:
             add(parser)
         self.arguments = parser.parse_args()
-        self.name = name
-        self.quick = self.arguments.quick
-        self.output = self.arguments.output
+        self.name, self.output, self.tables_only = name, self.arguments.output, self.arguments.tables
         self.output.mkdir(parents=True, exist_ok=True)
-        self._require_tools()
+        self.records = Records(self.output, name, self.arguments.commit if self.tables_only else None)
+        kept = self.records.all()
+        self.quick = all(record["quick"] for record in kept) if self.tables_only and kept else self.arguments.quick
+        if not self.tables_only:
+            self._require_tools()
 
     def _require_tools(self):
         wanted = ["pcl_floam_odometry", "pcl_floam_evaluate", "pcl_floam_simulate", "pcl_floam_pcl_odometry"]
@@ -53,18 +61,22 @@ class Options:
         return self.arguments.bin / name
 
 
-def log(text):
-    print(text, file=sys.stderr, flush=True)
-
-
 class Dataset:
-    """Scans with true poses at the sweep's end and middle."""
+    """Scans with true poses at the sweep's end and middle; truth None: there is none. What `told` says of them goes into
+    the records."""
 
-    def __init__(self, name, scans, truth, truth_middle=None, odometry_options=(), calibration=None):
+    def __init__(self, name, scans, truth, truth_middle=None, odometry_options=(), calibration=None, **told):
         self.name, self.scans, self.truth = name, scans, truth
         self.truth_middle = truth_middle or truth
         self.odometry_options = list(odometry_options)
         self.calibration = calibration
+        self.description = {"name": name, **{key: told.get(key) for key in
+                                             ("world", "sensor", "family", "seed", "count", "options")}}
+
+    def judge_at_the_middle(self):
+        """Where the last return, the end of a sweep for the odometry, comes long before the turn ends."""
+        self.truth = self.truth_middle
+        self.odometry_options += ["--pose-instant", "middle"]
 
 
 def simulate(options, plans):
@@ -73,85 +85,119 @@ def simulate(options, plans):
 
     def one(plan):
         world, sensor, seed, scans, extra = plan
+        extra = [str(word) for word in extra]
         parts = [world, sensor or "usual", f"seed{seed}", f"{scans}scans" if scans else "all"]
-        folder = options.arguments.data / "-".join(parts + [str(word).strip("-") for word in extra])
-        if not (folder / "poses_end.txt").exists():
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            making = pathlib.Path(tempfile.mkdtemp(dir=folder.parent, prefix="making-"))
-            log("simulating " + folder.name)
-            command = [options.tool("pcl_floam_simulate"), world, "--seed", str(seed), "--output", making]
-            command += ["--sensor", sensor] if sensor else []
-            command += ["--scans", str(scans)] if scans else []
-            subprocess.run(command + [str(word) for word in extra], check=True, stderr=subprocess.DEVNULL)
-            if folder.exists():
-                shutil.rmtree(folder)
-            making.rename(folder)
-        return Dataset(folder.name, folder / "scans", folder / "poses_end.txt", folder / "poses_middle.txt")
+        name = "-".join(parts + [pathlib.Path(word).stem if "/" in word else word.strip("-") for word in extra])
+        folder = options.arguments.data / name
+        if not options.tables_only and not (folder / "poses_end.txt").exists():
+            command = [world, "--seed", seed] + (["--sensor", sensor] if sensor else [])
+            make(options, folder, command + (["--scans", scans] if scans else []) + extra)
+        family = extra[extra.index("--family") + 1] if "--family" in extra else "tune"
+        return Dataset(name, folder / "scans", folder / "poses_end.txt", folder / "poses_middle.txt", world=world,
+                       sensor=sensor, family=family, seed=seed, count=scans or None, options=extra)
 
     with concurrent.futures.ThreadPoolExecutor(options.arguments.jobs) as pool:
         return list(pool.map(one, plans))
 
 
+def make(options, folder, arguments):
+    """Lets the simulator make a folder, which is there only when it is complete."""
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    making = pathlib.Path(tempfile.mkdtemp(dir=folder.parent, prefix="making-"))
+    log("simulating " + folder.name)
+    subprocess.run([options.tool("pcl_floam_simulate"), *map(str, arguments), "--output", making], check=True,
+                   stderr=subprocess.DEVNULL)
+    if folder.exists():
+        shutil.rmtree(folder)
+    making.rename(folder)
+
+
 class Run:
     """One program on one data set. `figures` has, after `execute`: ate and mean_error (m), t_rel (%), r_rel
-    (degree/100 m), path (m), ms (median), exit status; all None but the status if there is no result."""
+    (degree/100 m), path (m), ms (median), exit status, and what `judge`, a function of the run, adds to them; None for
+    each that there is not. With --tables they are those of the record, if there is one (`is_recorded`)."""
 
-    def __init__(self, data, label, arguments=(), method=None):
+    def __init__(self, data, label, arguments=(), method=None, judge=None):
         self.data, self.label, self.arguments, self.method = data, label, [str(a) for a in arguments], method
-        self.figures = {}
-        self.folder = None
+        self.judge = judge or (lambda run: {})
+        self.name = "".join(c if c.isalnum() or c in ".-" else "_" for c in f"{data.name}-{label}")
+        self.figures, self.is_recorded, self.folder = {}, False, None
 
     def _command(self, options):
         if self.method:
             command = [options.tool("pcl_floam_pcl_odometry"), "--method", self.method]
         else:
-            command = [options.tool("pcl_floam_odometry"), "--quiet", "--plot", "png", "--ground-truth",
-                       self.data.truth] + self.data.odometry_options
+            command = [options.tool("pcl_floam_odometry"), "--quiet", "--plot", "png"] + self.data.odometry_options
+            command += ["--ground-truth", self.data.truth] if self.data.truth else []
             command += ["--calibration", self.data.calibration] if self.data.calibration else []
         return [str(word) for word in command + [self.data.scans, "--output", self.folder] + self.arguments]
 
-    def execute(self, options):
-        name = "".join(c if c.isalnum() or c in ".-" else "_" for c in f"{self.data.name}-{self.label}")
-        self.folder = options.output / "runs" / name
-        self.folder.mkdir(parents=True, exist_ok=True)
-        command = self._command(options)
-        done = self.folder / "done.json"
-        made_by = pathlib.Path(command[0])
-        record = json.loads(done.read_text()) if done.exists() else {}
-        if record.get("command") != command or done.stat().st_mtime < made_by.stat().st_mtime:
-            log(f"running {self.label} on {self.data.name}")
-            with open(self.folder / "log.txt", "w") as messages:
-                try:
-                    status = subprocess.run(command, stdout=messages, stderr=messages, timeout=7200).returncode
-                except subprocess.TimeoutExpired:
-                    status = 124
-            record = {"command": command, "status": status}
-            done.write_text(json.dumps(record))
-        self.figures = {"status": record["status"], **self._judge(options)}
+    def execute(self, options, timed=False):
+        self.folder = options.output / "runs" / self.name
+        record = options.records.find(self.name)
+        if not options.tables_only:
+            record = self._up_to_date(options, record, timed)
+        self.is_recorded = record is not None
+        self.figures = collections.defaultdict(lambda: None, record["figures"] if record else {})
         return self
 
-    def _judge(self, options):
+    def _up_to_date(self, options, record, timed):
+        """The record, or a new one if there is none, the program is newer, or it is judged otherwise now."""
+        command = self._command(options)
+        made_by = pathlib.Path(command[0]).stat().st_mtime
+        is_done = (record is not None and record["command"] == command and time_of(record) > made_by
+                   and (record["timed"] or not timed))
+        if is_done and not (self.folder / "poses.kitti.txt").exists():
+            return record
+        status = record["figures"]["status"] if is_done else self._run(command)
+        figures = finite({"status": status, **self._accuracy(options), **self._median_time()})
+        figures.update(finite(self.judge(self)))
+        if is_done and record["figures"] == figures:
+            return record
+        return options.records.add(self.name, label=self.label, command=command, data=self.data.description,
+                                   quick=options.quick, timed=timed, figures=figures)
+
+    def _run(self, command):
+        log(f"running {self.label} on {self.data.name}")
+        shutil.rmtree(self.folder, ignore_errors=True)
+        self.folder.mkdir(parents=True)
+        with open(self.folder / "log.txt", "w") as messages:
+            try:
+                return subprocess.run(command, stdout=messages, stderr=messages, timeout=7200).returncode
+            except subprocess.TimeoutExpired:
+                return 124
+
+    def _accuracy(self, options):
         # Without compensation a scan is as it was at its middle, if at any one time.
         truth = self.data.truth_middle if self.method else self.data.truth
+        if truth is None:
+            return {}
         command = [options.tool("pcl_floam_evaluate"), "--json", "--estimate", self.folder / "poses.kitti.txt",
                    "--ground-truth", truth]
         command += ["--calibration", self.data.calibration] if self.data.calibration else []
         judged = subprocess.run(command, capture_output=True, text=True)
         if judged.returncode != 0:
-            return dict.fromkeys(["ate", "mean_error", "t_rel", "r_rel", "path", "ms"])
+            return {}
         accuracy = json.loads(judged.stdout)
-        with open(self.folder / "timing.csv") as file:
-            times = [float(row["total_ms"]) for row in csv.DictReader(file)]
         return {"ate": accuracy["ate"]["position_m"]["rms"], "mean_error": accuracy["ate"]["position_m"]["mean"],
                 "t_rel": accuracy["kitti"]["t_rel_percent"], "r_rel": accuracy["kitti"]["r_rel_deg_per_100m"],
-                "standard": accuracy["kitti"]["standard_lengths"], "path": accuracy["path_length_m"],
-                "ms": statistics.median(times) if times else None}
+                "standard": accuracy["kitti"]["standard_lengths"], "path": accuracy["path_length_m"]}
+
+    def _median_time(self):
+        file = self.folder / "timing.csv"
+        rows = list(csv.DictReader(file.read_text().splitlines())) if file.exists() else []
+        return {"ms": statistics.median(float(row["total_ms"]) for row in rows)} if rows else {}
+
+    def copy_picture(self, target):
+        """Copies the picture of the path, if there is one."""
+        if self.folder and (self.folder / "trajectory.png").exists():
+            shutil.copy(self.folder / "trajectory.png", target)
 
 
 def execute(options, runs, timed=False):
     """Executes runs: one after the other when their times are to be told, else several at a time."""
     with concurrent.futures.ThreadPoolExecutor(1 if timed else options.arguments.jobs) as pool:
-        return list(pool.map(lambda run: run.execute(options), runs))
+        return list(pool.map(lambda run: run.execute(options, timed), runs))
 
 
 def compensation_modes(options):
@@ -167,65 +213,9 @@ def default_compensation(options):
     return text.split("--compensation", 1)[1].split("[", 1)[1].split("]", 1)[0]
 
 
-def number(value, digits, factor=1.0):
-    if value is None or not math.isfinite(value):
-        return "–"
-    return f"{factor * value:.{digits}f}"
-
-
-def markdown(header, rows):
-    lines = ["| " + " | ".join(map(str, header)) + " |", "|" + "---|" * len(header)]
-    return "\n".join(lines + ["| " + " | ".join(map(str, row)) + " |" for row in rows])
-
-
-def publish(options, tables):
-    """Writes and prints the tables: (name, title, header, rows). One CSV file each, one Markdown file for all."""
-    texts = []
-    for name, title, header, rows in tables:
-        with open(options.output / f"{name}.csv", "w", newline="") as file:
-            csv.writer(file).writerows([header] + rows)
-        texts.append(f"**{title}**\n\n{markdown(header, rows)}\n")
-    text = "\n".join(texts)
-    (options.output / f"{options.name}.md").write_text(text)
-    print(text)
-    log(f"written to {options.output}")
-
-
-def bar_chart(options, name, title, unit, labels, series, logarithmic=False):
-    """Groups of bars: `labels` below, `series` a list of (name, values); None leaves a bar out."""
-    rows = [[label] + [values[i] for _, values in series] for i, label in enumerate(labels)]
-    block = "\n".join('"{}" '.format(str(row[0]).replace('"', "'")) + " ".join(
-        "NaN" if v is None or not math.isfinite(v) else f"{v:.6g}" for v in row[1:]) for row in rows)
-    plots = ", ".join('$data using {}:xtic(1) title "{}"'.format(i + 2, s[0]) for i, s in enumerate(series))
-    draw(f"""set terminal pngcairo noenhanced size 1000,520 font 'DejaVu Sans,10'
-set output '{options.output / name}.png'
-set title "{title}"
-set style data histograms
-set style histogram clustered gap 1
-set style fill solid 0.85 noborder
-set boxwidth 0.9
-set border 3
-set tics nomirror
-set xtics rotate by -25
-set grid ytics lc rgb '#e0e0e0'
-set ylabel '{unit}'
-set key outside right top
-{'set logscale y' if logarithmic else 'set yrange [0:*]'}
-$data << EOD
-{block}
-EOD
-plot {plots}
-""")
-
-
-def draw(script):
-    """Runs gnuplot; without it, or if it fails, the picture is missing and nothing else."""
-    try:
-        result = subprocess.run(["gnuplot"], input=script, text=True, capture_output=True)
-        if result.returncode != 0:
-            log("gnuplot: " + result.stderr.strip())
-    except FileNotFoundError:
-        log("no picture: gnuplot is not installed")
+def real_data(name):
+    """Where real data lies: in $PCL_FLOAM_DATA, or beside the repository."""
+    return pathlib.Path(os.environ.get("PCL_FLOAM_DATA", HERE / "../shared/data")).resolve() / name
 
 
 def positions(file):

@@ -130,6 +130,7 @@ private:
       result_.count(TrackingState::tracked) += undecided_;
       undecided_ = 0;
     }
+    result_.provisional += report.provisional ? 1 : 0;
     result_.with_weak_directions += report.registration.weak_directions.empty() ? 0 : 1;
   }
 

@@ -31,6 +31,7 @@ struct RunResult {
   std::vector<double> stamps;            ///< ... and its time, s
   std::vector<StageTimes> times;         ///< of those that were read
   std::array<std::size_t, 5> states{};   ///< number of scans by TrackingState
+  std::size_t provisional = 0;           ///< scans whose poses might still be corrected when they came
   std::size_t with_weak_directions = 0;  ///< scans that left a direction to the prediction
   std::vector<UnreadableScan> unreadable;
   OdometryReport last_read;    ///< of the last scan that was read

@@ -29,9 +29,9 @@ constexpr const char* kDescription =
     "Only SCANS and --output are needed; everything else has a sensible default.";
 
 constexpr const char* kFooter =
-    "\nResults: poses.kitti.txt, poses.tum.txt, timing.csv (all written scan by scan; the first poses\n"
-    "again if later scans correct them), map_edges.pcd, map_planes.pcd, summary.json, trajectory.svg\n"
-    "(drawn by gnuplot), map.png.\n"
+    "\nResults: poses.kitti.txt, poses.tum.txt, timing.csv, scans.csv (each scan's state, share that the map\n"
+    "explains, covariance and reason); all written scan by scan, the first poses again if later scans correct\n"
+    "them; map_edges.pcd, map_planes.pcd, summary.json, trajectory.svg (drawn by gnuplot), map.png.\n"
     "\nExit status: 0 all scans tracked; 1 finished, but a scan could not be read or tracked or a result not\n"
     "written; 2 bad option or path; 130, 143 interrupted: the results so far are written.\n"
     "\nExamples:\n"

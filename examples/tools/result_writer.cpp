@@ -23,38 +23,62 @@ const std::filesystem::path& created(const std::filesystem::path& folder)
   return folder;
 }
 
+std::string timingColumns()
+{
+  std::string columns = "scan";
+  for (const Stage& stage : kStages) {
+    columns += std::string(",") + stage.name + "_ms";
+  }
+  return columns;
+}
+
+constexpr const char* kScanColumns =
+    "scan,state,provisional,explained,weak_directions,covariance_xx_m2,covariance_xy_m2,covariance_xz_m2,"
+    "covariance_yy_m2,covariance_yz_m2,covariance_zz_m2,reason";
+
+/// As CSV has it: quotation marks within are doubled.
+std::string quoted(const std::string& text)
+{
+  std::string result = "\"";
+  for (const char c : text) {
+    result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  }
+  return result + '"';
+}
+
 }  // namespace
+
+CsvFile::CsvFile(const std::filesystem::path& path, const std::string& columns) : path_(path), stream_(path)
+{
+  stream_.imbue(std::locale::classic());
+  stream_ << columns;
+  endRow();
+}
+
+void CsvFile::endRow()
+{
+  errno = 0;
+  stream_ << '\n' << std::flush;
+  if (!stream_) {
+    throw FileError::ofSystem(path_, "cannot be written");
+  }
+}
 
 ResultWriter::ResultWriter(const std::filesystem::path& folder)
     : kitti_(created(folder) / "poses.kitti.txt", TrajectoryFormat::kitti),
       tum_(folder / "poses.tum.txt", TrajectoryFormat::tum),
-      timing_path_(folder / "timing.csv"),
-      timing_(timing_path_)
+      timing_(folder / "timing.csv", timingColumns()),
+      scans_(folder / "scans.csv", kScanColumns)
 {
-  timing_.imbue(std::locale::classic());
-  timing_ << "scan";
-  for (const Stage& stage : kStages) {
-    timing_ << ',' << stage.name << "_ms";
-  }
-  errno = 0;
-  timing_ << '\n' << std::fixed << std::setprecision(3) << std::flush;
-  if (!timing_) {
-    throw FileError::ofSystem(timing_path_, "cannot be written");
-  }
+  timing_.row() << std::fixed << std::setprecision(3);
+  scans_.row() << std::setprecision(9);
 }
 
 void ResultWriter::write(std::size_t scan, double stamp, const OdometryReport& report)
 {
   writePoses({stamp, report.world_T_sensor}, report.corrected_poses);
-  timing_ << scan;
-  for (const Stage& stage : kStages) {
-    timing_ << ',' << report.milliseconds.*stage.time;
-  }
-  errno = 0;
-  timing_ << '\n' << std::flush;
-  if (!timing_) {
-    throw FileError::ofSystem(timing_path_, "cannot be written");
-  }
+  writeStageTimes(scan, report.milliseconds);
+  writeVerdict(scan, report);
 }
 
 void ResultWriter::writePoses(const StampedPose& pose, const std::vector<SE3>& corrected)
@@ -67,6 +91,28 @@ void ResultWriter::writePoses(const StampedPose& pose, const std::vector<SE3>& c
   for (TrajectoryWriter* writer : {&kitti_, &tum_}) {
     corrected.empty() ? writer->write(pose) : writer->writeAgain(written_);
   }
+}
+
+void ResultWriter::writeStageTimes(std::size_t scan, const StageTimes& times)
+{
+  timing_.row() << scan;
+  for (const Stage& stage : kStages) {
+    timing_.row() << ',' << times.*stage.time;
+  }
+  timing_.endRow();
+}
+
+void ResultWriter::writeVerdict(std::size_t scan, const OdometryReport& report)
+{
+  scans_.row() << scan << ',' << toString(report.state) << ',' << (report.provisional ? 1 : 0) << ','
+               << report.explained << ',' << report.registration.weak_directions.size();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index k = i; k < 3; ++k) {
+      scans_.row() << ',' << report.covariance(i, k);
+    }
+  }
+  scans_.row() << ',' << quoted(report.reason);
+  scans_.endRow();
 }
 
 void writeTimes(const std::vector<double>& times, const std::filesystem::path& file)

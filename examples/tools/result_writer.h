@@ -8,12 +8,29 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <string>
 #include <vector>
 
 namespace pcl_floam::tools {
 
-/// Writes poses.kitti.txt, poses.tum.txt and timing.csv, flushed after every scan. Where poses are corrected later,
-/// both files are written again.
+/// A table whose rows are in the file as soon as they end.
+class CsvFile {
+public:
+  /// \param columns their names, with commas between them
+  /// \throws FileError if it cannot be made.
+  CsvFile(const std::filesystem::path& path, const std::string& columns);
+
+  [[nodiscard]] std::ostream& row() { return stream_; }
+  /// \throws FileError if the row cannot be written.
+  void endRow();
+
+private:
+  std::filesystem::path path_;
+  std::ofstream stream_;
+};
+
+/// Writes poses.kitti.txt, poses.tum.txt, timing.csv and scans.csv, flushed after every scan. Where poses are corrected
+/// later, both files of poses are written again; scans.csv keeps what was said of a scan when it came.
 class ResultWriter {
 public:
   /// Creates the folder and the files.
@@ -29,12 +46,14 @@ public:
 
 private:
   void writePoses(const StampedPose& pose, const std::vector<SE3>& corrected);
+  void writeStageTimes(std::size_t scan, const StageTimes& times);
+  void writeVerdict(std::size_t scan, const OdometryReport& report);
 
   TrajectoryWriter kitti_;
   TrajectoryWriter tum_;
   Trajectory written_;
-  std::filesystem::path timing_path_;
-  std::ofstream timing_;
+  CsvFile timing_;
+  CsvFile scans_;
 };
 
 /// One time in each line, s, as beside a folder of scans.

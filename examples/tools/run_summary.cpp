@@ -35,6 +35,7 @@ Json scansJson(const RunSummary& summary)
           {"doubtful", result.count(TrackingState::doubtful)},
           {"predicted", result.count(TrackingState::predicted)},
           {"not_started", result.count(TrackingState::not_started)},
+          {"provisional", result.provisional},
           {"with_weak_directions", result.with_weak_directions},
           {"unreadable", unreadable}};
 }
@@ -110,10 +111,12 @@ std::string describe(const RunSummary& summary)
   const RunResult& result = summary.result;
   const OdometryReport& last = result.last_read;
   const TimeStatistics total = timeStatistics(result.times, kStages.back());
-  std::string text = formatted(
-      "%-22s %zu of %zu, %zu tracked, %zu doubtful, %zu predicted, %zu unreadable", "scans", result.poses.size(),
-      summary.planned_scans, result.count(TrackingState::tracked) + result.count(TrackingState::initialized),
-      result.count(TrackingState::doubtful), result.count(TrackingState::predicted), result.unreadable.size());
+  std::string text =
+      formatted("%-22s %zu of %zu, %zu tracked, %zu doubtful, %zu predicted, %zu unreadable, %zu provisional", "scans",
+                result.poses.size(), summary.planned_scans,
+                result.count(TrackingState::tracked) + result.count(TrackingState::initialized),
+                result.count(TrackingState::doubtful), result.count(TrackingState::predicted), result.unreadable.size(),
+                result.provisional);
   text += formatted("\n%-22s %s", "registered by", toString(last.engine));
   text += formatted("\n%-22s %s: %s; times by %s", "structure", toString(last.structure), structureReason(last).c_str(),
                     toString(last.timing_source));

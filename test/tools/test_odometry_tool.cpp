@@ -22,6 +22,7 @@ TEST_F(OdometryTool, WritesEveryResult)
   EXPECT_EQ(lines("poses.kitti.txt"), static_cast<std::ptrdiff_t>(kScans));
   EXPECT_EQ(lines("poses.tum.txt"), static_cast<std::ptrdiff_t>(kScans));
   EXPECT_EQ(lines("timing.csv"), static_cast<std::ptrdiff_t>(kScans + 1));
+  EXPECT_EQ(lines("scans.csv"), static_cast<std::ptrdiff_t>(kScans + 1));
   const std::string timing = contentOf(folder.path() / "result" / "timing.csv");
   const std::string columns = timing.substr(0, timing.find('\n'));
   EXPECT_EQ(columns.rfind("scan,", 0), 0U);

@@ -62,6 +62,7 @@ TEST_F(InterruptedRun, EndsAfterThePresentScanWithEverythingWritten)
     expectSomePoses();
     EXPECT_EQ(poses().size(), summary()["scans"]["processed"]);
     EXPECT_EQ(lines("timing.csv"), lines("poses.kitti.txt") + 1);
+    EXPECT_EQ(lines("scans.csv"), lines("poses.kitti.txt") + 1);
     EXPECT_EQ(lines("poses.tum.txt"), lines("poses.kitti.txt"));
     EXPECT_FALSE(loadMap(folder.path() / "result").empty());
   }
