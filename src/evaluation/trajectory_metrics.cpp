@@ -195,6 +195,20 @@ RelativePoseError relativePoseError(const std::vector<SE3>& estimate, const std:
   return {statisticsOf(std::move(translation)), statisticsOf(std::move(rotation))};
 }
 
+RestMetric restMetric(const std::vector<SE3>& trajectory)
+{
+  RestMetric metric;
+  for (const SE3& pose : trajectory) {
+    const SE3 from_first = trajectory.front().inverse() * pose;
+    metric.drift = from_first.translation.norm();
+    metric.wander = std::max(metric.wander, metric.drift);
+    metric.rotation_drift = rotationAngle(from_first.rotation) * kDegreesPerRad;
+    metric.rotation_wander = std::max(metric.rotation_wander, metric.rotation_drift);
+  }
+  metric.jitter = relativePoseError(trajectory, std::vector<SE3>(trajectory.size()));
+  return metric;
+}
+
 double pathLength(const std::vector<SE3>& trajectory)
 {
   double length = 0.0;

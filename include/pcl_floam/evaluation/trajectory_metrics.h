@@ -1,5 +1,5 @@
 /// \file trajectory_metrics.h
-/// Accuracy of a trajectory against ground truth: the KITTI metric, ATE, RPE.
+/// Accuracy of a trajectory against ground truth, the KITTI metric, ATE, RPE, and against rest.
 #pragma once
 
 #include <pcl_floam/common/se3.h>
@@ -72,6 +72,18 @@ struct RelativePoseError {
 /// \throws std::invalid_argument if the two differ in size or \p step is 0.
 [[nodiscard]] RelativePoseError relativePoseError(const std::vector<SE3>& estimate, const std::vector<SE3>& truth,
                                                   std::size_t step = 1);
+
+/// How far from rest the poses are of a sensor that is known to be at rest: all of it is error.
+struct RestMetric {
+  double wander = 0.0;           ///< m, largest distance of a pose from the first one
+  double drift = 0.0;            ///< m, distance of the last pose from the first one
+  double rotation_wander = 0.0;  ///< degrees, largest angle of a pose to the first one; up to 180
+  double rotation_drift = 0.0;   ///< degrees, angle of the last pose to the first one
+  RelativePoseError jitter;      ///< of the motions from each pose to the next one
+};
+
+/// \return zeros without poses, and a jitter of count 0 for a single one
+[[nodiscard]] RestMetric restMetric(const std::vector<SE3>& trajectory);
 
 /// Length of the path in m.
 [[nodiscard]] double pathLength(const std::vector<SE3>& trajectory);
