@@ -102,7 +102,7 @@ struct SurfaceOdometry : OdometryRun {
   /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
   TrackingState judge()
   {
-    if (tracker.hasRivals()) {
+    if (tracker.isUndecided()) {
       report.reason = "several motions explain the first scans: the pose may be wrong";
       return TrackingState::doubtful;
     }

@@ -19,12 +19,13 @@ constexpr double kMapSpacing = 0.3;
 /// Sweeps until it is decided how it began, if one motion is left by then, and else.
 constexpr std::size_t kFirstSweeps = 12;
 constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
-/// A track whose evidence is so much less than the best one's is given up: false ones lead by less while the map is
-/// young, and fall behind by more where a scene is clear.
-constexpr double kHopeless = 150.0;
+/// A track whose evidence is so much less than the best one's is given up, for each point of a sweep, since the errors
+/// that lead astray are shared by points: false ones lead by less while the map is young, and fall behind by more where
+/// a scene is clear.
+constexpr double kHopeless = 0.1;
 
-/// The same of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or so, in
-/// which nothing else differs, maps included. Motions of which one explains that much more have left a trace.
+/// The same in all of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or
+/// so, in which nothing else differs, maps included. Motions of which one explains that much more have left a trace.
 constexpr double kWrongDirection = 15.0;
 
 /// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.
@@ -32,6 +33,11 @@ constexpr std::size_t kMostCorrected = 2 * kFirstSweeps;
 
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostHypotheses = 4;
+
+double hopeless(const Sweep& sweep)
+{
+  return kHopeless * static_cast<double>(sweep.sample.size());
+}
 
 std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 {
@@ -42,6 +48,12 @@ std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 
 }  // namespace
 
+bool Tracker::isUndecided() const
+{
+  return hasRivals() && kept_.size() >= kFirstSweeps;
+}
+
+/// Whether the sensor may as well have begun to move otherwise.
 bool Tracker::hasRivals() const
 {
   return is_open_ && std::count_if(hypotheses_.begin(), hypotheses_.end(), [this](const Hypothesis& other) {
@@ -218,7 +230,7 @@ Tracker::Outcome Tracker::findFirstMotion(const Sweep& sweep)
   }
   kept_ = {first_, sweep};
   is_open_ = may_correct_ = true;
-  giveUp(kHopeless);
+  giveUp(hopeless(sweep));
   first_ = {};
   outcome.registration = hypotheses_.front().last;
   outcome.corrected = true;
@@ -272,7 +284,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
     return;
   }
   const std::size_t before = hypotheses_.front().number;
-  giveUp(is_open_ ? kHopeless : kWrongDirection);
+  giveUp(is_open_ ? hopeless(sweep) : kWrongDirection);
   outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = may_correct_ && outcome.changed_track;
   if (is_open_) {
@@ -336,7 +348,7 @@ void Tracker::settle()
   const bool is_told =
       std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
   const bool leaves_no_trace = !hypotheses_.front().last.report.weak_directions.empty() && !is_told;
-  giveUp(leaves_no_trace ? kWrongDirection : kHopeless);
+  giveUp(leaves_no_trace ? kWrongDirection : hopeless(kept_.back()));
   keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
   std::vector<std::vector<SE3>> poses(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {

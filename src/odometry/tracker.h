@@ -44,8 +44,8 @@ public:
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether it is not decided yet how the sensor began to move.
   [[nodiscard]] bool isOpen() const { return is_open_; }
-  /// Whether the sensor may as well have begun to move otherwise.
-  [[nodiscard]] bool hasRivals() const;
+  /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well.
+  [[nodiscard]] bool isUndecided() const;
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
   /// Whether they may since several motions are followed.
@@ -56,6 +56,8 @@ public:
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
 
 private:
+  [[nodiscard]] bool hasRivals() const;
+
   struct Hypothesis {
     Track track;
     std::vector<SweepPose> poses;

@@ -19,8 +19,8 @@ namespace pcl_floam {
 enum class TrackingState : std::uint8_t {
   initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
   tracked,      ///< registered with the map
-  doubtful,     ///< registered, but the map has no surface for most of the scan, or several motions explain the first
-                ///< scans: the pose may be wrong (by surfaces)
+  doubtful,     ///< registered, but the map has no surface for most of the scan, or several motions still explain the
+                ///< first twelve scans: the pose may be wrong (by surfaces)
   predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
   not_started   ///< no usable scan yet: the pose is the initial pose
 };
