@@ -49,7 +49,6 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   sampling.sample(sweep.edges, side, thin.edges);
   thin.periods = sweep.periods;
   thin.fraction = sweep.fraction;
-  thin.axis = sweep.axis;
   thin.is_direction_known = sweep.is_direction_known;
   thin.hint = sweep.hint;
   return thin;

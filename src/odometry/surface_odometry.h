@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/side_by_side.h"
-#include "filters/spin_axis.h"
 #include "odometry/first_poses.h"
 #include "odometry/odometry_run.h"
 #include "odometry/tracker.h"
@@ -26,7 +25,6 @@ struct SurfaceOdometry : OdometryRun {
   Tracker tracker;
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of the lasers' spin; zero until a scan with scan lines
   FirstPoses first_poses;                          ///< until it is decided how the sensor moved
   std::vector<FeatureSet> first_scans;             ///< their features, as measured
 
@@ -79,19 +77,10 @@ struct SurfaceOdometry : OdometryRun {
     scan.takePoints(cloud, parameters);
     if (!lacksStructure() && hasEnoughPoints()) {
       tracker.sample(scan.points, sweep);
-      findAxis();
     } else {
       sweep.dense.clear();  // the last scan's
       sweep.sample.clear();
     }
-  }
-
-  void findAxis()
-  {
-    if (axis.isZero(0.0) && scan.lines.valid()) {
-      axis = spinAxis(sweep.dense);
-    }
-    sweep.axis = scan.lines.valid() ? axis : Eigen::Vector3d(Eigen::Vector3d::Zero());
   }
 
   [[nodiscard]] bool lacksStructure() const

@@ -5,8 +5,6 @@
 #include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/motion/motion_hint.h>
 
-#include <Eigen/Core>
-
 #include <optional>
 #include <vector>
 
@@ -21,7 +19,6 @@ struct Sweep {
   double periods_error = 0.0;     ///< ... and how far off that may be, one standard deviation
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< that the lasers turn about; zero: none that is known
   bool is_direction_known = true;  ///< of time: else it may run the other way, or the points may be of one instant
   std::optional<MotionHint> hint;  ///< of the motion since the sweep before
 };

@@ -324,7 +324,6 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.reach = motion_.poseCovariance();
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
-  problem.axis = sweep.axis;
   problem.threads = settings_.threads;
   return problem;
 }

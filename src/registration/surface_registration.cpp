@@ -28,9 +28,6 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
-/// By how much a laser may point higher or lower than it is said to, rad (0.07 degrees).
-constexpr double kLaserAngle = 1.2e-3;
-
 using Square6 = Eigen::Matrix<double, 6, 6>;
 using Square12 = Eigen::Matrix<double, 12, 12>;
 using Column12 = Eigen::Matrix<double, 12, 1>;
@@ -208,11 +205,9 @@ private:
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.open = pose_.rotation * problem_.open;
     residuals.weighs_evidence = weighs_evidence_;
-    residuals.axis = problem_.axis;
     residuals.threads = problem_.threads;
     SurfaceSums sums = residuals.sumsOf(problem_.scan, stride);
     sums.add(residuals.sumsOf(problem_.edges, 1));
-    sums.lasers.takeFrom(sums.equations, kResidualsBesideMotion / (kLaserAngle * kLaserAngle));
     return sums;
   }
 
@@ -233,8 +228,8 @@ private:
     off.segment<3>(6) = pose_.rotation * faster.head<3>();
     off.segment<3>(9) = pose_.rotation * faster.tail<3>();
     Equations equations;
-    const Square6 coupling = cleaned(e.coupling);
-    equations.information << cleaned(e.information), coupling, coupling.transpose(), cleaned(e.twist_information);
+    equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
+        cleaned(e.twist_information);
     equations.information /= kResidualsBesideMotion;
     equations.information += prior_;
     equations.gradient << strong_.transpose() * e.gradient, strong_.transpose() * e.twist_gradient;

@@ -52,8 +52,7 @@ struct SurfaceProblem {
   bool wants_evidence = false;   ///< else the result has none
   /// Along which the poses whose evidence is compared differ, a unit vector in the sensor's axes; zero: anyhow.
   Eigen::Vector3d open = Eigen::Vector3d::Zero();
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< that the lasers turn about, in the sensor's axes; zero: none
-  bool looks_for_weak = true;                      ///< directions that the scan does not tell of
+  bool looks_for_weak = true;  ///< directions that the scan does not tell of
   int max_iterations = 12;
   int threads = 1;
 };

@@ -49,7 +49,6 @@ void SurfaceSums::add(const SurfaceSums& other)
   equations.cost += other.equations.cost;
   equations.weight += other.equations.weight;
   equations.squared_extent += other.equations.squared_extent;
-  lasers.add(other.lasers);
   squares += other.squares;
   robust_weight += other.robust_weight;
   evidence += other.evidence;
@@ -82,70 +81,31 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
                                 SurfaceSums& sums) const
 {
   std::array<Eigen::Vector3d, kPointsPerChunk> places;
-  std::array<PlacedPoint, kPointsPerChunk> placed_points;
+  std::array<PlacedPoint, kPointsPerChunk> placed;
   std::array<std::uint32_t, kPointsPerChunk> lasers{};
   std::array<Surface, kPointsPerChunk> surfaces;
   ResidualRows rows;
   places.fill(Eigen::Vector3d::Zero());
+  const SE3& pose = sensor.pose();
   for (std::size_t i = begin; i < end; ++i) {
     const ScanPoint& point = (*term.points)[i * stride];
-    placed_points[i - begin] = placed(point);
-    places[i - begin] = placed_points[i - begin].place;
+    PlacedPoint& p = placed[i - begin];
+    p.arm = pose.rotation * sensor.undistorted(point);
+    p.place = places[i - begin] = pose.translation + p.arm;
+    p.since_middle = periods * MovingSensor::sinceMiddle(point);
     // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
     lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
     switch (surfaces[i].kind) {
-      case SurfaceKind::plane: addPlane(placed_points[i], surfaces[i], rows, sums); break;
-      case SurfaceKind::line: addLine(placed_points[i], surfaces[i], rows, sums); break;
-      case SurfaceKind::point: addPoint(placed_points[i], surfaces[i], rows, sums); break;
-      case SurfaceKind::unknown: addNew(sums); break;
+      case SurfaceKind::plane: addPlane(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::line: addLine(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::point: addPoint(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::unknown: break;
     }
   }
   rows.addTo(sums.equations);
-}
-
-PlacedPoint SurfaceResiduals::placed(const ScanPoint& point) const
-{
-  const SE3& pose = sensor.pose();
-  PlacedPoint p;
-  p.arm = pose.rotation * sensor.undistorted(point);
-  p.place = pose.translation + p.arm;
-  p.since_middle = periods * MovingSensor::sinceMiddle(point);
-  p.raised = pose.rotation * raised(point);
-  p.laser = point.laser;
-  return p;
-}
-
-/// In the sensor's axes.
-Eigen::Vector3d SurfaceResiduals::raised(const ScanPoint& point) const
-{
-  const Eigen::Vector3d p(point.x, point.y, point.z);
-  const double along = axis.dot(p);
-  const double across = (p - along * axis).norm();
-  return across > 0.0 ? Eigen::Vector3d((p.squaredNorm() * axis - along * p) / across)
-                      : Eigen::Vector3d(Eigen::Vector3d::Zero());
-}
-
-void SurfaceResiduals::add(const Eigen::Vector3d& direction, double residual, double weight, const PlacedPoint& p,
-                           ResidualRows& rows, SurfaceSums& sums) const
-{
-  rows.add(direction, p.arm, residual, weight, p.since_middle);
-  if (!axis.isZero(0.0)) {
-    Eigen::Matrix<double, 6, 1> jacobian;
-    jacobian << direction, p.arm.cross(direction);
-    sums.lasers.add(p.laser, direction.dot(p.raised), jacobian, residual, weight, p.since_middle);
-  }
-}
-
-/// The map has no surface there: as likely as not it has never been seen.
-void SurfaceResiduals::addNew(SurfaceSums& sums) const
-{
-  constexpr double kNew = 0.5;
-  if (weighs_evidence) {
-    sums.evidence += std::log(kNew) / kResidualsPerIndependentOne;
-  }
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
@@ -163,7 +123,7 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
                           by_direction * (1.0 + lever / kLasersOfAPlane);
   const double along_open = open.dot(plane.direction);
   const double w = weight(r * r, variance, plane.direction, p, along_open * along_open, sums);
-  add(plane.direction, r, w, p, rows, sums);
+  rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
   addNormalsNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
@@ -180,8 +140,8 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
       length > 0.0 ? Eigen::Vector3d(across / length) : Eigen::Vector3d(line.direction.unitOrthogonal());
   const double told = open.cross(line.direction).squaredNorm();
   const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, told, sums);
-  add(first, length, w, p, rows, sums);
-  add(line.direction.cross(first), 0.0, w, p, rows, sums);
+  rows.add(first, p.arm, length, w, p.since_middle);
+  rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
   ++sums.lines;
 }
 
@@ -201,7 +161,7 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
     if (d > kNotFelt) {
       const Eigen::Vector3d u = rest.col(i) / d;
       rest -= d * u * u.transpose();
-      add(u, u.dot(r), d * w, p, rows, sums);
+      rows.add(u, p.arm, u.dot(r), d * w, p.since_middle);
     }
   }
 }

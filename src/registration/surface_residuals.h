@@ -2,13 +2,11 @@
 /// How far a sweep's points are from the surfaces of a map, summed up.
 #pragma once
 
-#include "registration/laser_errors.h"
 #include "registration/normal_equations.h"
 #include "registration/surface_registration.h"
 #include "registration/sweep_points.h"
 
 #include <cstddef>
-#include <cstdint>
 
 namespace pcl_floam {
 
@@ -16,17 +14,14 @@ class ResidualRows;
 
 /// A point where the present estimate has it.
 struct PlacedPoint {
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();     ///< from the sensor
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();   ///< in the target's frame
-  double since_middle = 0.0;                         ///< in periods: so much of a change of the velocity moves it, too
-  Eigen::Vector3d raised = Eigen::Vector3d::Zero();  ///< how it moves as its laser is raised, m per rad
-  std::uint32_t laser = 0;
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
+  double since_middle = 0.0;                        ///< in periods: so much of a change of the velocity moves it, too
 };
 
 /// H, b (Eq. 10 to 14) and what the report tells, of some of the residuals. The twist of the equations is the velocity.
 struct SurfaceSums {
   NormalEquations equations;
-  LaserErrors lasers;
   double squares = 0.0;
   double robust_weight = 0.0;
   double evidence = 0.0;
@@ -44,7 +39,6 @@ struct SurfaceResiduals {
   double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
   bool weighs_evidence = false;     ///< else the sums have none
   Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< \ref SurfaceProblem::open, in the target's axes
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< \ref SurfaceProblem::axis
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
@@ -52,13 +46,8 @@ struct SurfaceResiduals {
   [[nodiscard]] SurfaceSums sumsOf(const SurfaceTerm& term, std::size_t stride) const;
 
 private:
-  [[nodiscard]] PlacedPoint placed(const ScanPoint& point) const;
-  [[nodiscard]] Eigen::Vector3d raised(const ScanPoint& point) const;
-  void add(const Eigen::Vector3d& direction, double residual, double weight, const PlacedPoint& point,
-           ResidualRows& rows, SurfaceSums& sums) const;
   void addChunk(const SurfaceTerm& term, std::size_t begin, std::size_t end, std::size_t stride,
                 SurfaceSums& sums) const;
-  void addNew(SurfaceSums& sums) const;
   void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const;
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
