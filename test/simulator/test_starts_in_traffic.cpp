@@ -173,6 +173,22 @@ TEST_P(AmbiguousStarts, AreToldOf)
   }
 }
 
+/// Twelve sweeps do not tell here: that is said, and the next ones tell.
+TEST(UndecidedStarts, AreDoubtfulUntilOneMotionIsLeft)
+{
+  FirstScans scans(optionsOf(Start{23, 0.0, 0.3, "vlp16"}));
+  int doubtful = 0;
+  TrackingState state = TrackingState::not_started;
+  for (int number = 0; number < kLongest; ++number) {
+    state = scans.next().state;
+    doubtful += state == TrackingState::doubtful ? 1 : 0;
+  }
+  EXPECT_GT(doubtful, 0);
+  EXPECT_EQ(state, TrackingState::tracked);
+  EXPECT_LT(scans.motionError(), 0.3);
+  EXPECT_LT(scans.wayError(), 2.0);
+}
+
 /// The other one is lost: see the README's limits.
 class ScanMissingAtTheStart : public testing::TestWithParam<Start> {};
 
