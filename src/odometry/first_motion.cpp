@@ -118,7 +118,7 @@ std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
   std::stable_sort(motions.begin(), motions.end(),
                    [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
   constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 40.0;  // of thinned sweeps
+  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
   std::vector<Vector6> likely;
   for (const FirstMotion& motion : motions) {
     const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const Vector6& other) {

@@ -48,6 +48,14 @@ std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 
 }  // namespace
 
+/// Whether most of the first sweeps do not tell of a direction, and nobody else did.
+bool Tracker::leavesNoTrace() const
+{
+  const bool is_told =
+      std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
+  return 2 * hypotheses_.front().without_trace > kept_.size() && !is_told;
+}
+
 bool Tracker::isUndecided() const
 {
   return hasRivals() && kept_.size() >= kFirstSweeps;
@@ -289,7 +297,7 @@ void Tracker::followUp(const Sweep& sweep, Outcome& outcome)
   outcome.corrected = may_correct_ && outcome.changed_track;
   if (is_open_) {
     kept_.push_back(sweep);
-    if (kept_.size() >= (hasRivals() ? kMostFirstSweeps : kFirstSweeps)) {
+    if (kept_.size() >= (hasRivals() && !leavesNoTrace() ? kMostFirstSweeps : kFirstSweeps)) {
       settle();
       outcome.corrected = true;
     }
@@ -306,6 +314,7 @@ bool Tracker::stepAll(const Sweep& sweep)
     Hypothesis& hypothesis = hypotheses_[i];
     hypothesis.last = hypothesis.track.step(sweep, is_open_ ? Rivals::motions : Rivals::directions);
     hypothesis.is_lost = !hypothesis.last.report.hasConverged();
+    hypothesis.without_trace += is_open_ && !hypothesis.last.report.weak_directions.empty() ? 1 : 0;
     if (may_correct_ && !hypothesis.is_lost) {
       hypothesis.poses.push_back(hypothesis.track.pose());
     }
@@ -345,10 +354,7 @@ void Tracker::giveUp(double behind)
 /// the least is as good as any.
 void Tracker::settle()
 {
-  const bool is_told =
-      std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
-  const bool leaves_no_trace = !hypotheses_.front().last.report.weak_directions.empty() && !is_told;
-  giveUp(leaves_no_trace ? kWrongDirection : hopeless(kept_.back()));
+  const bool leaves_no_trace = leavesNoTrace();
   keepOneOfEachDirection(leaves_no_trace ? hasMovedLess : isLikelier);
   std::vector<std::vector<SE3>> poses(hypotheses_.size());
   eachSideBySide(settings_.threads, hypotheses_.size(), [&](std::size_t i) {

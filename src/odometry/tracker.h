@@ -57,6 +57,7 @@ public:
 
 private:
   [[nodiscard]] bool hasRivals() const;
+  [[nodiscard]] bool leavesNoTrace() const;
 
   struct Hypothesis {
     Track track;
@@ -64,6 +65,7 @@ private:
     SurfaceRegistration last;
     bool is_lost = false;
     std::size_t number = 0;
+    std::size_t without_trace = 0;  ///< first sweeps that did not tell of a direction
 
     [[nodiscard]] double direction() const { return track.settings().direction; }
     [[nodiscard]] double evidence() const;
