@@ -25,8 +25,8 @@ struct SurfaceOdometry : OdometryRun {
   Tracker tracker;
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
-  FirstPoses first_poses;                          ///< until it is decided how the sensor moved
-  std::vector<FeatureSet> first_scans;             ///< their features, as measured
+  FirstPoses first_poses;               ///< until it is decided how the sensor moved
+  std::vector<FeatureSet> first_scans;  ///< their features, as measured
 
   void track(const CloudView& cloud, std::optional<double> stamp)
   {
