@@ -120,7 +120,8 @@ void MapSharpnessEstimation::addScan(const std::vector<Eigen::Vector3f>& scan, c
   for (const Eigen::Vector3f& point : scan) {
     const double range = point.cast<double>().norm();
     // Nor one in each voxel: points off a surface have voxels of their own, and would count more. Ranges refuse NaN.
-    if (random_() <= part * std::mt19937::max() && range >= parameters_.min_range && range <= parameters_.max_range) {
+    if (static_cast<double>(random_()) <= part * std::mt19937::max() && range >= parameters_.min_range &&
+        range <= parameters_.max_range) {
       points_.emplace_back((first_T_sensor * point.cast<double>().eval()).cast<float>());
     }
   }
