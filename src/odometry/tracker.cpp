@@ -16,7 +16,7 @@ namespace {
 constexpr double kCellsPerRoot = 12.0;
 /// Points of one sweep enter the map no closer together than this part of its finest cells' side.
 constexpr double kMapSpacing = 0.3;
-/// Sweeps until it is decided how it began, if one motion is left by then, and else.
+/// Sweeps until it is decided how it began: if one motion is left by then, and at most.
 constexpr std::size_t kFirstSweeps = 12;
 constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
 /// A track whose evidence is so much less than the best one's is given up, for each point of a sweep, since the errors
@@ -25,7 +25,7 @@ constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
 constexpr double kHopeless = 0.1;
 
 /// The same in all of a direction of time, once it is settled how the sensor began to move: of the last five sweeps or
-/// so, in which nothing else differs, maps included. Motions of which one explains that much more have left a trace.
+/// so, in which nothing else differs, maps included.
 constexpr double kWrongDirection = 15.0;
 
 /// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.

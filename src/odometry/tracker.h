@@ -56,9 +56,6 @@ public:
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
 
 private:
-  [[nodiscard]] bool hasRivals() const;
-  [[nodiscard]] bool leavesNoTrace() const;
-
   struct Hypothesis {
     Track track;
     std::vector<SweepPose> poses;
@@ -89,6 +86,8 @@ private:
   void settle(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
               bool leaves_no_trace) const;
   void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
+  [[nodiscard]] bool hasRivals() const;
+  [[nodiscard]] bool leavesNoTrace() const;
   static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
   static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);
   [[nodiscard]] std::vector<TrackSettings> directions(bool are_known) const;
