@@ -5,6 +5,7 @@
 #   bash examples/experiments/08_starts.sh [--quick] [--data DIR] [--output DIR] [--sensors NAME,NAME...]
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
 from support import *
+from detector import motion
 
 SCANS = 18
 LOST = 0.2  # m a scan
@@ -15,16 +16,13 @@ STARTS = {"moving at 25 m/s": ([31, 32, 33, 34, 35, 36], [0, 8, 16, 24, 32], [])
 
 
 def motions(rows):
-    """From pose to pose, in the earlier one's axes, m."""
-    for before, after in zip(rows, rows[1:]):
-        step = [after[4 * i + 3] - before[4 * i + 3] for i in range(3)]
-        yield [sum(before[4 * i + k] * step[i] for i in range(3)) for k in range(3)]
+    return [motion(before, after) for before, after in zip(rows, rows[1:])]
 
 
 def judge(run):
     if not (run.folder / "poses.kitti.txt").exists():
         return {"lost": True}
-    estimate, truth = (list(motions(positions(file)[0])) for file in (run.folder / "poses.kitti.txt", run.data.truth))
+    estimate, truth = (motions(positions(file)[0]) for file in (run.folder / "poses.kitti.txt", run.data.truth))
     if len(estimate) != len(truth):
         return {"lost": True}
     off = statistics.median(math.dist(e, t) for e, t in zip(estimate[-5:], truth[-5:]))

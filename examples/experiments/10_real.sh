@@ -24,7 +24,7 @@
 # 0.4 % and 5.5 cm, that of the ramp to 0.3 % and 9 cm: smaller errors there are the truth's.
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
 from support import *
-from real import at_rest, camera_way, first_scans, offers_sharpness, raised_scans, ratio, sharpness
+from real import at_rest, camera_way, first_scans, raised_scans, ratio, sharpness
 
 LIFT = "0.205"  # degrees, of KITTI's HDL-64
 RAISED = ["--vertical-correction", LIFT]
@@ -59,19 +59,17 @@ class Drive:
     def runs(self):
         result = [Run(self.theirs if method else self.ours, label, OUTDOORS if method else [], method, self._judge)
                   for label, method in METHODS.items()]
-        if judges_sharpness:  # in the run's folder, which is emptied before
-            result[0].arguments += ["--save-scans", str(options.output / "runs" / result[0].name / "scans")]
+        # In the run's folder, which is emptied before.
+        result[0].arguments += ["--save-scans", str(options.output / "runs" / result[0].name / "scans")]
         return result
 
     def _judge(self, run):
         if not (run.folder / "poses.kitti.txt").exists():
             return {}
         places = positions(run.folder / "poses.kitti.txt")[1]
-        figures = {"way": sum(map(math.dist, places, places[1:])), **(at_rest(places) if self.stands else {})}
-        if judges_sharpness:
-            scans = run.data.scans if run.method else run.folder / "scans"
-            figures.update(sharpness(options, run.folder, scans))
-        return figures
+        figures = {"way": sum(map(math.dist, places, places[1:])), **(at_rest(options, run.folder) if self.stands else {})}
+        scans = run.data.scans if run.method else run.folder / "scans"
+        return {**figures, **sharpness(options, run.folder, scans)}
 
 
 def real_drive(name):
@@ -148,7 +146,7 @@ def rows_of(drives):
         row += ["–", "–"] if drives[0].stands else [side_by_side("t_rel", 3), side_by_side("ate", 1, 100)]
         row += [side_by_side("wander", 1, 100), side_by_side("jitter", 1, 1000)] if drives[0].stands else ["–", "–"]
         row += [number(statistics.median(times), 1) if (times := list(values_of(same, "ms"))) else "–"]
-        yield row + ([side_by_side("spread", 2, 100), side_by_side("entropy", 3)] if has_sharpness else [])
+        yield row + [side_by_side("spread", 2, 100), side_by_side("entropy", 3)]
 
 
 def values_of(members, key):
@@ -174,16 +172,14 @@ options = Options("10_real", "real drives and their twins, with PCL's methods be
 if not options.arguments.drives and not options.tables_only:
     sys.exit("DATA_DIR is missing: the folder of the real drives")
 known = options.records.of_data("name")
-judges_sharpness = not options.tables_only and offers_sharpness(options)
 drives = {name: drive for name in DRIVES if (drive := real_drive(name))}
 if not drives:
     sys.exit(f"{options.arguments.drives or options.output}: none of {', '.join(DRIVES)}")
 twins = {name: made for name in drives if (kind := twin_of(name)) and (made := list(kind.drives(name)))}
 runs = {drive.ours.name: execute(options, drive.runs(), timed=True)
         for drive in list(drives.values()) + [drive for same in twins.values() for drive in same]}
-has_sharpness = any(run.figures["spread"] is not None for members in runs.values() for run in members)
-header = ["drive", "sensor", "method", "way / m", "t_rel / %", "ATE / cm", "wander / cm", "jitter / mm", "ms per scan"]
-header += ["spread across planes / cm", "map entropy"] if has_sharpness else []
+header = ["drive", "sensor", "method", "way / m", "t_rel / %", "ATE / cm", "wander / cm", "jitter / mm", "ms per scan",
+          "spread across planes / cm", "map entropy"]
 publish(options, [("real", "Real drives", header, [row for drive in drives.values() for row in rows_of([drive])]),
                   ("twins", "Their simulated twins, seed by seed", header,
                    [row for same in twins.values() for row in rows_of(same)]),

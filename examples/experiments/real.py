@@ -4,19 +4,24 @@ import array
 import json
 import math
 import pathlib
-import statistics
 import subprocess
 import sys
 
 BYTES_OF_POINT = 16  # KITTI's x, y, z and intensity
 
 
-def at_rest(positions):
+def evaluated(options, folder, *words):
+    """What pcl_floam_evaluate says of the poses of a run without ground truth; nothing if it fails."""
+    command = [options.tool("pcl_floam_evaluate"), "--json", "--estimate", folder / "poses.kitti.txt", *words]
+    judged = subprocess.run(command, capture_output=True, text=True)
+    return json.loads(judged.stdout) if judged.returncode == 0 else {}
+
+
+def at_rest(options, folder):
     """Of a sensor that stands: how far its pose wanders off the first one, and how much it changes from scan to scan,
     root mean square, m."""
-    steps = [math.dist(before, after) for before, after in zip(positions, positions[1:])]
-    return {"wander": max(math.dist(positions[0], p) for p in positions),
-            "jitter": math.sqrt(statistics.fmean(step ** 2 for step in steps)) if steps else None}
+    found = evaluated(options, folder, "--at-rest").get("rest", {})
+    return {"wander": found.get("wander_m"), "jitter": found.get("jitter_rms_m")}
 
 
 def raised(points, degrees):
@@ -78,21 +83,11 @@ def camera_way(poses, target):
     return target
 
 
-def offers_sharpness(options):
-    tool = options.tool("pcl_floam_evaluate")
-    return "--scans" in subprocess.run([tool, "--help"], capture_output=True, text=True).stdout
-
-
 def sharpness(options, folder, scans):
     """How sharp a map the poses of a run make of scans; kept beside them, as it takes long."""
     kept = folder / "sharpness.json"
     if not kept.exists():
-        command = [options.tool("pcl_floam_evaluate"), "--json", "--estimate", folder / "poses.kitti.txt", "--scans",
-                   scans]
-        judged = subprocess.run(command, capture_output=True, text=True)
-        if judged.returncode != 0:
-            return {}
-        kept.write_text(json.dumps(json.loads(judged.stdout).get("sharpness", {})))
+        kept.write_text(json.dumps(evaluated(options, folder, "--scans", scans).get("sharpness", {})))
     found = json.loads(kept.read_text())
     return {"spread": found.get("spread_across_planes_m"), "entropy": found.get("mean_map_entropy")}
 

@@ -12,11 +12,29 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "examples/e
 import real  # noqa: E402
 
 
-class AtRest(unittest.TestCase):
-    def test_wander_is_from_the_first_pose_and_jitter_from_scan_to_scan(self):
-        figures = real.at_rest([(1.0, 0.0, 0.0), (1.0, 0.3, 0.0), (1.0, 0.3, 0.4), (1.0, 0.0, 0.4)])
-        self.assertAlmostEqual(figures["wander"], 0.5)
-        self.assertAlmostEqual(figures["jitter"], math.sqrt((0.09 + 0.16 + 0.09) / 3.0))
+class Evaluated(unittest.TestCase):
+    """Figures are those of pcl_floam_evaluate; here a program that says which ones."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.program = self.folder / "evaluate"
+
+    def tool(self, _name):
+        return self.program
+
+    def says(self, text, status=0):
+        self.program.write_text(f"#!/bin/sh\necho '{text}'\nexit {status}\n")
+        self.program.chmod(0o755)
+
+    def test_rest_is_what_the_tool_says(self):
+        self.says('{"rest": {"wander_m": 0.5, "jitter_rms_m": 0.25, "drift_m": 0.1}}')
+        self.assertEqual(real.at_rest(self, self.folder), {"wander": 0.5, "jitter": 0.25})
+
+    def test_a_tool_that_fails_gives_nothing(self):
+        self.says('{"rest": {"wander_m": 0.5}}', status=2)
+        self.assertEqual(real.at_rest(self, self.folder), {"wander": None, "jitter": None})
 
 
 class Raised(unittest.TestCase):
