@@ -2,7 +2,7 @@
 # Is 'tracked' a promise? Roads, starts at speed, indoors, weather, gaps and blind sides, with the errors of real lasers:
 # how many scans whose motion is wrong are not called good, and how many right ones are doubted.
 #
-#   bash examples/experiments/09_detector.sh [--quick] [--data DIR] [--output DIR] [--instant end|middle]
+#   bash examples/experiments/09_detector.sh [--quick] [--data DIR] [--output DIR] [--instant end|middle] [--family tune]
 #
 # A scan is called good if its state is tracked or initialized and it is not provisional; called lost if it is predicted
 # or not started; else doubtful. It is wrong if its motion since the anchor is off by more than 0.5 m + 1 % of the true
@@ -16,7 +16,8 @@
 # scan to scan, lost runs included, 99 % within three sigma of both scans' position covariances, along the error.
 # A scan without returns, as in a gap, is rightly called lost: the last figure but one leaves those out.
 #   --instant middle takes the poses at the middle of the sweep, for which the covariance is meant.
-#   Worlds are of the family `report`, seeds 901 and up: no setting was chosen on them. The motorway along KITTI's path
+#   Worlds are of the family `report`, seeds 901 and up: no setting was chosen on them. --family tune takes the same
+# list of the family, and of seeds, that settings may be chosen on. The motorway along KITTI's path
 # 01 needs ../shared/data/kitti_odom_paths/01.txt, or $PCL_FLOAM_DATA/kitti_odom_paths/01.txt.
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
 from support import *
@@ -59,14 +60,17 @@ GROUPS = {
 }
 QUICK = {"open road, at speed": 1, "room": 1, "a second without returns": 1}  # groups, and how many rows of each
 QUICK_SCANS = 70
+TUNE_BELOW = 300  # by so much less are the seeds of the family `tune`
 
 
 def arguments(parser):
+    parser.add_argument("--family", default="report", choices=["report", "tune"], help="of worlds")
     parser.add_argument("--instant", default="end", choices=["end", "middle"], help="of the sweep: which pose is judged")
 
 
 def plans():
     """(group, plan of the simulator) of all runs."""
+    family = options.arguments.family
     for group, rows in GROUPS.items():
         for world, sensor, seeds, scans, extra in rows[:QUICK.get(group, 0) if options.quick else None]:
             if ALONG[0] in extra and not (PATH.exists() or options.tables_only):
@@ -74,7 +78,8 @@ def plans():
                 continue
             for seed in seeds[:1 if options.quick else None]:
                 count = min(scans, QUICK_SCANS) if options.quick else scans
-                yield group, (world, sensor, seed, count, extra + ["--family", "report", "--realism", "real"])
+                yield group, (world, sensor, seed - TUNE_BELOW * (family == "tune"), count,
+                              extra + ["--family", family, "--realism", "real"])
 
 
 def total(runs, key):

@@ -164,8 +164,10 @@ private:
     const std::string file = (scans_.path(scan).parent_path() / scans_.name(scan)).string();
     if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
       progress_.message(file + ": not tracked: " + report.reason);
-    } else if (report.state == TrackingState::doubtful && !isUndecided(report)) {
-      progress_.message(file + ": doubtful: " + report.reason);
+    } else if (report.state == TrackingState::doubtful) {
+      if (!isUndecided(report) && report.reason != result_.last_read.reason) {
+        progress_.message(file + ": doubtful: " + report.reason);
+      }
     } else if (!report.corrected_poses.empty() && !report.reason.empty()) {
       progress_.message(file + ": only now it is plain how the sensor moved: " +
                         std::to_string(report.corrected_poses.size()) + " poses before are corrected");

@@ -5,6 +5,7 @@
 #include "common/side_by_side.h"
 #include "odometry/first_poses.h"
 #include "odometry/odometry_run.h"
+#include "odometry/told_motion.h"
 #include "odometry/tracker.h"
 
 #include <algorithm>
@@ -25,6 +26,7 @@ struct SurfaceOdometry : OdometryRun {
   Tracker tracker;
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
+  ToldMotion told_motion;
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
   std::vector<FeatureSet> first_scans;  ///< their features, as measured
 
@@ -88,18 +90,23 @@ struct SurfaceOdometry : OdometryRun {
     return parameters.structure == ScanStructure::scan_lines && !scan.lines.valid();
   }
 
-  /// A pose that the map does not bear out is not called tracked. The first sweeps' map is too young to tell.
+  /// A pose that the map does not bear out is not called tracked, nor one that only the expectation holds. The first
+  /// sweeps' map is too young to tell.
   TrackingState judge()
   {
     if (tracker.isUndecided()) {
       report.reason = "several motions explain the first scans: the pose may be wrong";
       return TrackingState::doubtful;
     }
-    if (report.explained >= kBorneOut || tracker.isOpen()) {
-      return TrackingState::tracked;
+    if (report.explained < kBorneOut && !tracker.isOpen()) {
+      report.reason = "the map has no surface for most of the scan: the pose may be wrong";
+      return TrackingState::doubtful;
     }
-    report.reason = "the map has no surface for most of the scan: the pose may be wrong";
-    return TrackingState::doubtful;
+    if (!told_motion.isTold()) {
+      report.reason = "the scans hardly tell how the sensor moves along some direction: the pose may be wrong";
+      return TrackingState::doubtful;
+    }
+    return TrackingState::tracked;
   }
 
   [[nodiscard]] bool hasEnoughPoints() const
@@ -134,10 +141,13 @@ struct SurfaceOdometry : OdometryRun {
     const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
     report.explained = outcome.registration.explained();
+    report.told_deviation = leastToldDeviation(outcome.registration.told, report.registration.target_T_source.rotation,
+                                               sweep.hint, parameters.registration.locked);
     report.milliseconds.registration += watch.lap();
     if (!report.registration.hasConverged()) {
       return;
     }
+    told_motion.take(report.told_deviation);
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);

@@ -127,6 +127,7 @@ private:
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
     report.information = strong_.transpose() * sums.equations.information * strong_;
+    result.told = report.information / kResidualsBesideMotion;
     report.cost = sums.equations.cost;
     report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
