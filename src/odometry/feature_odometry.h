@@ -48,10 +48,13 @@ struct FeatureOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return first ? failToStart() : predictOnly(toString(report.registration.termination));
     }
+    noteTold(report.registration.covariance);
+    const Eigen::Matrix3d open = told_motion.open(periods);
     updateMotion(predicted);
     updateMap(cloud);
     report.milliseconds.map += watch.lap();
-    finish(TrackingState::tracked);
+    finish(toldState());
+    report.covariance.topLeftCorner<3, 3>() += open;
   }
 
   void miss(std::optional<double> stamp)

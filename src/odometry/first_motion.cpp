@@ -94,13 +94,12 @@ private:
 /// Along the open directions both ways, and as it is told.
 std::vector<FirstLook> looksAlong(const std::vector<Eigen::Vector3d>& open, const Sweep& second)
 {
-  constexpr double kFastest = 4.0;  // m a period: 40 m/s at ten sweeps a second
   std::vector<FirstLook> looks;
   if (second.hint) {
     looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
   }
   for (const Eigen::Vector3d& direction : open) {
-    for (int step = 1; step * kNear <= kFastest * second.periods; ++step) {
+    for (int step = 1; step * kNear <= kFastestMotion * second.periods; ++step) {
       for (const double sign : {1.0, -1.0}) {
         Vector6 velocity = Vector6::Zero();
         velocity.head<3>() = sign * step * kNear / second.periods * direction;

@@ -7,6 +7,7 @@
 #include "odometry/map_building.h"
 #include "odometry/scan_preparation.h"
 #include "odometry/stopwatch.h"
+#include "odometry/told_motion.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -26,6 +27,7 @@ struct OdometryRun {
   SE3 initial_pose;  ///< of the first scan, at the instant of the parameters
   PreparedScan scan;
   PendingHint hint;
+  ToldMotion told_motion;
   double sweep_fraction = 0.0;       ///< of the last scan that told of it
   double periods = 0.0;              ///< since the last scan that was registered ...
   double periods_error = 0.0;        ///< ... and how far off that may be
@@ -59,6 +61,23 @@ struct OdometryRun {
     periods = 0.0;
     periods_error = 0.0;
     hint.reach();
+  }
+
+  /// \param told covariance of the pose as the scan alone tells it
+  void noteTold(const Matrix6& told)
+  {
+    told_motion.take(toldPosition(told, report.registration.target_T_source.rotation, hint.sinceLast()));
+    report.told_deviation = told_motion.deviation();
+  }
+
+  /// A pose that only the expectation holds is not called tracked.
+  TrackingState toldState()
+  {
+    if (told_motion.isTold()) {
+      return TrackingState::tracked;
+    }
+    report.reason = "the scans hardly tell how the sensor moves along some direction: the pose may be wrong";
+    return TrackingState::doubtful;
   }
 
   /// Periods since the last scan that a velocity holds for: it is not known for ever.

@@ -5,7 +5,6 @@
 #include "common/side_by_side.h"
 #include "odometry/first_poses.h"
 #include "odometry/odometry_run.h"
-#include "odometry/told_motion.h"
 #include "odometry/tracker.h"
 
 #include <algorithm>
@@ -26,7 +25,6 @@ struct SurfaceOdometry : OdometryRun {
   Tracker tracker;
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
-  ToldMotion told_motion;
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
   std::vector<FeatureSet> first_scans;  ///< their features, as measured
 
@@ -102,11 +100,7 @@ struct SurfaceOdometry : OdometryRun {
       report.reason = "the map has no surface for most of the scan: the pose may be wrong";
       return TrackingState::doubtful;
     }
-    if (!told_motion.isTold()) {
-      report.reason = "the scans hardly tell how the sensor moves along some direction: the pose may be wrong";
-      return TrackingState::doubtful;
-    }
-    return TrackingState::tracked;
+    return toldState();
   }
 
   [[nodiscard]] bool hasEnoughPoints() const
@@ -141,13 +135,11 @@ struct SurfaceOdometry : OdometryRun {
     const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
     report.explained = outcome.registration.explained();
-    report.told_deviation = leastToldDeviation(outcome.registration.told, report.registration.target_T_source.rotation,
-                                               sweep.hint, parameters.registration.locked);
     report.milliseconds.registration += watch.lap();
     if (!report.registration.hasConverged()) {
       return;
     }
-    told_motion.take(report.told_deviation);
+    noteTold(outcome.registration.told);
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
@@ -249,6 +241,8 @@ struct SurfaceOdometry : OdometryRun {
       report.covariance = turned(predicted().poseCovariance(), world_T_track);
     } else if (state == TrackingState::tracked || state == TrackingState::doubtful) {
       report.covariance = report.registration.covariance;
+      const Eigen::Matrix3d& turn = world_T_track.rotation;
+      report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open(sweep.periods) * turn.transpose();
     }
     first_poses.give(report.world_T_sensor);
     if (tracker.isTracking() && !tracker.mayCorrect()) {

@@ -28,6 +28,8 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
+constexpr double kNothingKnown = 1e-6;  // 1/m^2 and 1/rad^2: a kilometre
+
 using Square6 = Eigen::Matrix<double, 6, 6>;
 using Square12 = Eigen::Matrix<double, 12, 12>;
 using Column12 = Eigen::Matrix<double, 12, 1>;
@@ -87,7 +89,6 @@ private:
   /// By how much the velocity follows the pose, and how well it is known then; and how well the pose is known.
   [[nodiscard]] static Square12 priorInformation(const SweepPrior& prior)
   {
-    constexpr double kNothingKnown = 1e-6;  // 1/m^2 and 1/rad^2: a kilometre
     constexpr double kLeastVariance = 1e-12;
     const Square12 covariance = prior.covariance;
     const Square6 pose = covariance.topLeftCorner<6, 6>() + kLeastVariance * Square6::Identity();
@@ -127,7 +128,7 @@ private:
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
     report.information = strong_.transpose() * sums.equations.information * strong_;
-    result.told = report.information / kResidualsBesideMotion;
+    result.told = told(report.information);
     report.cost = sums.equations.cost;
     report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
@@ -137,12 +138,25 @@ private:
         problem_.scan.points->size() + (problem_.edges.points != nullptr ? problem_.edges.points->size() : 0);
   }
 
+  /// Of the pose, whatever was expected.
+  [[nodiscard]] Matrix6 told(const Matrix6& information) const
+  {
+    Square6 known = information / kResidualsBesideMotion;
+    known.diagonal().array() += kNothingKnown;
+    return withoutLocked(Square6(known.inverse()));
+  }
+
   [[nodiscard]] Square12 posteriorOf(const SurfaceSums& sums) const
   {
     const Equations equations = equationsOf(sums);
-    Square12 covariance = equations.information.inverse();
-    for (int i = 0; i < 12; ++i) {
-      if (isLocked(i)) {
+    return withoutLocked(Square12(equations.information.inverse()));
+  }
+
+  template <typename Covariance>
+  [[nodiscard]] Covariance withoutLocked(Covariance covariance) const
+  {
+    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+      if (isLocked(static_cast<int>(i))) {
         covariance.row(i).setZero();
         covariance.col(i).setZero();
       }

@@ -64,7 +64,7 @@ struct SurfaceRegistration {
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
   /// anywhere within a metre; and half of how many more of those that tell of the open direction fit than do not.
   double evidence = 0.0;
-  Matrix6 told = Matrix6::Zero();  ///< information of the scan alone, its neighbours' shared errors in it
+  Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
   std::size_t points = 0;          ///< that took part
 
   /// Part of the points that lie on surfaces of the target.

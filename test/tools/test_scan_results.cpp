@@ -15,7 +15,7 @@ namespace {
 using test::contentOf;
 using test::OdometryTool;
 
-constexpr std::size_t kColumns = 12;
+constexpr std::size_t kColumns = 13;
 
 /// Lines cut at commas; a reason may hold some itself and is left whole.
 std::vector<std::vector<std::string>> cells(const std::string& content)
@@ -72,8 +72,10 @@ TEST_F(ScanResults, ATrackedScanIsBorneOutByTheMapAndHasACovariance)
   EXPECT_EQ(last[2], "0");
   EXPECT_GT(std::stod(last[3]), 0.5);
   EXPECT_LE(std::stod(last[3]), 1.0);
-  EXPECT_EQ(last[4], "0");
-  const std::size_t diagonal[] = {5, 8, 10};
+  EXPECT_GT(std::stod(last[4]), 0.0);
+  EXPECT_LT(std::stod(last[4]), 0.012);
+  EXPECT_EQ(last[5], "0");
+  const std::size_t diagonal[] = {6, 9, 11};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double sigma = summary()["last_scan"]["position_sigma_m"][axis];
     EXPECT_NEAR(std::sqrt(std::stod(last[diagonal[axis]])), sigma, 1e-6 * sigma);
@@ -99,7 +101,7 @@ TEST_F(ScanResults, WeakDirectionsAreCountedPerScan)
   ASSERT_EQ(odometry("scans -o result --engine features --weak-threshold 0.1 --plot none").status, 0);
   std::size_t with_weak_directions = 0;
   for (const auto& row : rows()) {
-    with_weak_directions += row[4] == "0" ? 0 : 1;
+    with_weak_directions += row[5] == "0" ? 0 : 1;
   }
   EXPECT_GT(with_weak_directions, kScans / 2);
   EXPECT_EQ(summary()["scans"]["with_weak_directions"], with_weak_directions);

@@ -135,13 +135,14 @@ TEST(ResultWriter, TellsOfEachScanWhatWasSaidOfItInFullDigits)
   report.state = TrackingState::doubtful;
   report.provisional = true;
   report.explained = 0.123456789;
+  report.told_deviation = 0.00123456789;
   report.registration.weak_directions.resize(2);
   report.covariance.topLeftCorner<3, 3>() << 1.0, 2.0, 3.0, 2.0, 4.0, 5.0e-12, 3.0, 5.0e-12, 1234567.89;
   report.reason = "a \"wall\", or none";
   ResultWriter(folder.path()).write(17, 0.0, report);
   const std::string content = test::contentOf(folder.path() / "scans.csv");
   EXPECT_EQ(content.substr(content.find('\n') + 1),
-            "17,doubtful,1,0.123456789,2,1,2,3,4,5e-12,1234567.89,\"a \"\"wall\"\", or none\"\n");
+            "17,doubtful,1,0.123456789,0.00123456789,2,1,2,3,4,5e-12,1234567.89,\"a \"\"wall\"\", or none\"\n");
 }
 
 TEST(TimeStatistics, AreThoseOfTheSamples)

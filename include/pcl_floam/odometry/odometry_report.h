@@ -19,9 +19,9 @@ namespace pcl_floam {
 enum class TrackingState : std::uint8_t {
   initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
   tracked,      ///< registered with the map
-  doubtful,     ///< registered, but the pose may be wrong (by surfaces): the map has no surface for most of the scan,
-                ///< several motions still explain the first twelve scans, or nothing but the expectation holds it
-                ///< along some direction (a smooth tunnel; an open road, until something beside it was seen)
+  doubtful,     ///< registered, but the pose may be wrong: nothing but the expectation holds it along some direction (a
+                ///< smooth tunnel; an open road, until something beside it was seen), or, by surfaces, the map has no
+                ///< surface for most of the scan, or several motions still explain the first twelve scans
   predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
   not_started   ///< no usable scan yet: the pose is the initial pose
 };
@@ -59,13 +59,14 @@ struct OdometryReport {
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
   double explained = 0.0;
-  /// By surfaces: how well the scan, and a hint of its motion, tell where the sensor is, whatever was expected: one
+  /// How well the scan, and a hint of its motion, tell where the sensor is, whatever was expected: one
   /// standard deviation along the direction of which they tell least, m; a kilometre where nothing does. `doubtful`
   /// until two scans in a row together tell to 1.2 cm, and again from one on that tells to no more than 5 cm.
   double told_deviation = 0.0;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; along directions that the scans said nothing of (weak ones, by surfaces;
-  /// all of them while poses are predicted) what the velocity may have been off since they were seen last. By features
+  /// all of them while poses are predicted) what the velocity may have been off since they were seen last. While a
+  /// position is doubtful since nothing but the expectation holds it, any speed up to 40 m/s counts. By features
   /// weak ones have a variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by

@@ -1,0 +1,115 @@
+// Whether scans tell how the sensor moves, whatever was expected.
+#include "odometry/told_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pcl_floam {
+namespace {
+
+constexpr double kWell = 0.005;    // m: as walls around tell
+constexpr double kSoSo = 0.03;     // as an open road does
+constexpr double kHardly = 0.3;    // as a smooth tunnel does
+constexpr double kNothing = 1000;  // m
+
+/// Along x so well, along the others well.
+Matrix6 told(double along)
+{
+  Vector6 variance = Vector6::Constant(kWell * kWell);
+  variance[0] = along * along;
+  return variance.asDiagonal();
+}
+
+Eigen::Matrix3d position(double along)
+{
+  return toldPosition(told(along), Eigen::Matrix3d::Identity(), std::nullopt);
+}
+
+MotionHint hintOf(double along)
+{
+  MotionHint hint;
+  hint.covariance = told(along);
+  return hint;
+}
+
+TEST(ToldMotion, IsToldAtOnceWhereAScanTellsOfAllDirections)
+{
+  ToldMotion motion;
+  EXPECT_FALSE(motion.isTold());
+  motion.take(position(kWell));
+  EXPECT_TRUE(motion.isTold());
+  EXPECT_NEAR(motion.deviation(), kWell, 1e-12);
+  EXPECT_TRUE(motion.open(1.0).isZero());
+}
+
+TEST(ToldMotion, IsNeverToldByScansThatTellLittleHoweverMany)
+{
+  ToldMotion motion;
+  for (int scan = 0; scan < 1000; ++scan) {
+    motion.take(position(kSoSo));
+    ASSERT_FALSE(motion.isTold()) << scan;
+  }
+}
+
+TEST(ToldMotion, LastsUntilAScanLeavesADirectionOpen)
+{
+  ToldMotion motion;
+  motion.take(position(kWell));
+  motion.take(position(kSoSo));
+  EXPECT_TRUE(motion.isTold());
+  motion.take(position(kHardly));
+  EXPECT_FALSE(motion.isTold());
+  motion.take(position(kSoSo));
+  EXPECT_FALSE(motion.isTold());
+  motion.take(position(kWell));
+  EXPECT_TRUE(motion.isTold());
+}
+
+TEST(ToldMotion, AnySpeedCountsAlongWhatIsOpenAndOnlyThere)
+{
+  ToldMotion motion;
+  motion.take(position(kHardly));
+  const Eigen::Matrix3d once = motion.open(1.0);
+  EXPECT_GT(std::sqrt(once(0, 0)), 1.0);
+  EXPECT_NEAR(once(1, 1), 0.0, 1e-12);
+  EXPECT_NEAR(once(2, 2), 0.0, 1e-12);
+  EXPECT_TRUE(motion.open(3.0).isApprox(9.0 * once));
+}
+
+TEST(ToldMotion, AHintTellsWhatTheScanLeavesOpen)
+{
+  const Eigen::Matrix3d both = toldPosition(told(kNothing), Eigen::Matrix3d::Identity(), hintOf(0.01));
+  EXPECT_NEAR(std::sqrt(both(0, 0)), 0.01, 1e-5);
+  ToldMotion motion;
+  motion.take(both);
+  EXPECT_TRUE(motion.isTold());
+}
+
+TEST(ToldMotion, TwoThatTellAlikeTellTwiceAsMuch)
+{
+  const Eigen::Matrix3d both = toldPosition(told(kSoSo), Eigen::Matrix3d::Identity(), hintOf(kSoSo));
+  EXPECT_NEAR(both(0, 0), kSoSo * kSoSo / 2.0, 1e-12);
+  EXPECT_NEAR(both(1, 1), kWell * kWell / 2.0, 1e-12);
+}
+
+TEST(ToldMotion, AHintIsInTheSensorsAxes)
+{
+  const Eigen::Matrix3d left = (Eigen::Matrix3d() << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0).finished();
+  MotionHint hint = hintOf(kNothing);  // of y in the target's axes
+  const Eigen::Matrix3d both = toldPosition(told(kNothing), left, hint);
+  EXPECT_GT(std::sqrt(both(0, 0)), 0.9 * kWell / std::sqrt(2.0));
+  EXPECT_LT(std::sqrt(both(0, 0)), 1.1 * kWell);
+  EXPECT_NEAR(std::sqrt(both(1, 1)), kWell, 1e-6);
+}
+
+TEST(ToldMotion, NothingHasToTellOfWhatIsLocked)
+{
+  ToldMotion motion;
+  motion.take(position(0.0));
+  EXPECT_TRUE(motion.isTold());
+  EXPECT_TRUE(std::isfinite(motion.deviation()));
+}
+
+}  // namespace
+}  // namespace pcl_floam
