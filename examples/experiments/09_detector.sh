@@ -107,18 +107,19 @@ def verdict(name, value, asked, is_least):
 
 
 def draw_characteristic(runs):
-    of_wrong, of_right = ([value for run in runs for value in run.figures[key]]
-                          for key in ("explained_of_wrong", "explained_of_right"))
+    explained, told = ([[sign * value for run in runs for value in run.figures[f"{figure}_of_{which}"]]
+                        for which in ("wrong", "right")] for figure, sign in (("explained", 1.0), ("told", -1.0)))
     right = total(runs, "judged") - total(runs, "wrong")
-    told = (share(total(runs, "right_doubted") + total(runs, "right_lost"), right),
+    said = (share(total(runs, "right_doubted") + total(runs, "right_lost"), right),
             share(total(runs, "found"), total(runs, "wrong")))
-    if not of_wrong or not of_right:
+    if not all(explained):
         log("no picture: nothing was wrong, or nothing right")
         return
     curves(options, "detector", "Wrong scans found against right scans doubted",
            ("right scans not called good / %", "wrong scans not called good / %"),
-           [("doubted below a threshold of what the map explains", characteristic(of_wrong, of_right))],
-           [("as the library calls them", [told])])
+           [("doubted where the map explains less than a threshold", characteristic(*explained)),
+            ("doubted where a scan tells its position worse than to a threshold", characteristic(*told))],
+           [("as the library calls them", [said])])
 
 
 options = Options("09_detector", "whether 'tracked' is a promise", arguments)

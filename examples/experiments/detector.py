@@ -97,14 +97,15 @@ def judged(estimate, truth, verdicts):
     columns = [f"covariance_{axes}_m2" for axes in ("xx", "xy", "xz", "yy", "yz", "zz")]
     within = motions_within(estimate, truth, [[float(v[column]) for column in columns] for v in verdicts])
     moved = range(1, len(estimate))  # nothing is asked of the first scan
-    explained = lambda is_wrong: [round(float(verdicts[i]["explained"]), 4) for i in moved if wrong[i] == is_wrong]
+    figure = lambda name, is_wrong: [round(float(verdicts[i][name]), 4) for i in moved if wrong[i] == is_wrong]
     count = lambda is_wrong, *names: sum(wrong[i] == is_wrong and calls[i] in names for i in moved)
     unseen = sum(not wrong[i] and calls[i] == "lost" and verdicts[i]["reason"] == NOTHING_SEEN for i in moved)
     return {"judged": len(moved), "wrong": sum(wrong),
             "slipping": sum(slipping_scans(estimate, truth, calls, wrong)), "found": count(True, "doubtful", "lost"),
             "right_lost": count(False, "lost"), "right_unseen": unseen, "right_doubted": count(False, "doubtful"),
             "within": sum(within),
-            "explained_of_wrong": explained(True), "explained_of_right": explained(False)}
+            "explained_of_wrong": figure("explained", True), "explained_of_right": figure("explained", False),
+            "told_of_wrong": figure("told_deviation_m", True), "told_of_right": figure("told_deviation_m", False)}
 
 
 def judge_run(run):
@@ -122,8 +123,8 @@ def judge_run(run):
 
 
 def characteristic(of_wrong, of_right):
-    """Share of right scans doubted and of wrong scans found, in per cent, if those were doubted of which the map
-    explains less than a threshold, for all thresholds."""
+    """Share of right scans doubted and of wrong scans found, in per cent, if those were doubted that have less than a
+    threshold, for all thresholds."""
     wrong, right = sorted(of_wrong), sorted(of_right)
     points, found, doubted = [(0.0, 0.0)], 0, 0
     for threshold in sorted(set(wrong + right)):

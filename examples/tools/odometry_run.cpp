@@ -125,9 +125,11 @@ private:
     ++result_.count(report.state);
     if (isUndecided(report)) {
       ++undecided_;
-    } else if (!report.provisional) {  // it is plain now, and what was given out before is corrected
-      result_.count(TrackingState::doubtful) -= undecided_;
-      result_.count(TrackingState::tracked) += undecided_;
+    } else if (!report.provisional) {
+      if (report.state == TrackingState::tracked) {  // it is plain now, and what was given out before is corrected
+        result_.count(TrackingState::doubtful) -= undecided_;
+        result_.count(TrackingState::tracked) += undecided_;
+      }
       undecided_ = 0;
     }
     result_.provisional += report.provisional ? 1 : 0;

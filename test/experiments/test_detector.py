@@ -116,8 +116,8 @@ class Covariance(unittest.TestCase):
         self.assertEqual(detector.motions_within(estimate, truth, [along_x, along_x]), [False])
 
 
-def verdict(state, provisional="0", explained="0.9", variance="0.01", reason=""):
-    result = {"state": state, "provisional": provisional, "explained": explained, "reason": reason}
+def verdict(state, provisional="0", explained="0.9", told="0.01", variance="0.01", reason=""):
+    result = {"state": state, "provisional": provisional, "explained": explained, "told_deviation_m": told, "reason": reason}
     result.update({f"covariance_{a}_m2": variance if a[0] == a[1] else "0" for a in
                    ("xx", "xy", "xz", "yy", "yz", "zz")})
     return result
@@ -129,12 +129,13 @@ class Figures(unittest.TestCase):
         estimate = line([0.0, 1.0, 4.0, 7.0, 8.0, 8.0])
         truth = line([0.0, 1.0, 2.0, 3.0, 6.0, 6.0])
         verdicts = [verdict("initialized", explained="0"), verdict("tracked", "1"),
-                    verdict("doubtful", explained="0.3"), verdict("tracked", explained="0.6"),
+                    verdict("doubtful", explained="0.3", told="0.2"), verdict("tracked", explained="0.6"),
                     verdict("doubtful", explained="0.4"),
                     verdict("predicted", reason="too few points")]
         self.assertEqual(detector.judged(estimate, truth, verdicts), {
             "judged": 5, "wrong": 2, "slipping": 0, "found": 1, "right_lost": 1, "right_unseen": 1, "right_doubted": 2, "within": 2,
-            "explained_of_wrong": [0.3, 0.6], "explained_of_right": [0.9, 0.4, 0.9]})
+            "explained_of_wrong": [0.3, 0.6], "explained_of_right": [0.9, 0.4, 0.9],
+            "told_of_wrong": [0.2, 0.01], "told_of_right": [0.01, 0.01, 0.01]})
 
     def test_a_scan_that_was_seen_and_lost_is_not_excused(self):
         poses = line([0.0, 1.0, 2.0])
