@@ -74,12 +74,14 @@ bool MapBuilding::add(const FeatureSet& measured, const SweepPose& world_T_senso
 
 /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
 /// at only now and then.
-bool MapBuilding::add(const PreparedScan& scan, const SweepPose& world_T_sensor, const OdometryParameters& parameters)
+bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPose& world_T_sensor,
+                      const OdometryParameters& parameters)
 {
   constexpr int kKeyframesBetween = 7;
   const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
   if (is_keyframe) {
     if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
+      scan.takePoints(cloud, parameters);
       map_.forgetSeenThrough(undistorted(scan.points, world_T_sensor, parameters.threads), world_T_sensor.middle,
                              parameters.threads);
     }

@@ -1,7 +1,7 @@
 #include "odometry/scan_preparation.h"
 
 #include "filters/scan_line_finders.h"
-#include "odometry/vertical_correction.h"
+#include "filters/vertical_correction.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
 
@@ -55,11 +55,19 @@ void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters&
   correctVerticalAngle(parameters.vertical_correction, features);
 }
 
+ScanReturns PreparedScan::returnsOf(const CloudView& scan, const OdometryParameters& parameters) const
+{
+  return {scan,
+          lines,
+          timing,
+          static_cast<double>(parameters.features.min_range),
+          static_cast<double>(parameters.features.max_range),
+          parameters.vertical_correction};
+}
+
 void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
 {
-  collectPoints(scan, lines, timing, static_cast<double>(parameters.features.min_range),
-                static_cast<double>(parameters.features.max_range), points);
-  correctVerticalAngle(parameters.vertical_correction, points);
+  collectPoints(returnsOf(scan, parameters), points);
 }
 
 void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges)

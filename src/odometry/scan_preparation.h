@@ -18,7 +18,7 @@ struct PreparedScan {
   ScanTiming timing;
   double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
   FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
-  std::vector<ScanPoint> points;  ///< all returns
+  std::vector<ScanPoint> points;  ///< all returns, if they were asked for
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
@@ -28,6 +28,7 @@ struct PreparedScan {
   bool supposeTimes(const CloudView& scan, const OdometryParameters& parameters);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
   /// Apart from the features, so that both can be taken at a time.
+  [[nodiscard]] ScanReturns returnsOf(const CloudView& scan, const OdometryParameters& parameters) const;
   void takePoints(const CloudView& scan, const OdometryParameters& parameters);
   /// E_k as points, once there are features.
   void takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges);
