@@ -82,19 +82,19 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
 {
   std::array<Eigen::Vector3d, kPointsPerChunk> places;
   std::array<PlacedPoint, kPointsPerChunk> placed;
-  std::array<std::uint32_t, kPointsPerChunk> lasers{};
+  std::array<std::uint32_t, kPointsPerChunk> lasers;
   std::array<Surface, kPointsPerChunk> surfaces;
   ResidualRows rows;
-  places.fill(Eigen::Vector3d::Zero());
   const SE3& pose = sensor.pose();
-  for (std::size_t i = begin; i < end; ++i) {
-    const ScanPoint& point = (*term.points)[i * stride];
-    PlacedPoint& p = placed[i - begin];
-    p.arm = pose.rotation * sensor.undistorted(point);
-    p.place = places[i - begin] = pose.translation + p.arm;
-    p.since_middle = periods * MovingSensor::sinceMiddle(point);
+  const ScanPoint* points = term.points->data() + begin * stride;
+  sensor.undistorted(points, stride, end - begin, places.data());
+  for (std::size_t i = 0; i < end - begin; ++i) {
+    PlacedPoint& p = placed[i];
+    p.arm = pose.rotation * places[i];
+    p.place = places[i] = pose.translation + p.arm;
+    p.since_middle = periods * MovingSensor::sinceMiddle(points[i * stride]);
     // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
-    lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
+    lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
