@@ -89,6 +89,7 @@ public:
     if (line_.points.size() <= 2 * neighbors_) {
       return;
     }
+    line_number_ = static_cast<std::int32_t>(m);
     first_index_ = static_cast<std::size_t>(lines_.begin[m]);
     if (neighborhood.is_sparse && parameters_.smoothness == SmoothnessKind::vector_sum) {
       computeSmoothnessAcross(line_.points, neighbors_, line_.sigma);
@@ -246,6 +247,7 @@ private:
     feature.smoothness = line_.sigma[k];
     feature.index = lines_.index[first_index_ + k];
     feature.time = timeOf(n);
+    feature.line = line_number_;
     feature.intensity = cloud_.intensityOf(static_cast<std::size_t>(feature.index));
     return feature;
   }
@@ -264,6 +266,7 @@ private:
   const std::vector<std::uint8_t>& selectable_;
   LineScratch& line_;
   FeatureSet& features_;
+  std::int32_t line_number_ = 0;
   std::size_t first_index_ = 0;
   int neighbors_ = 0;       ///< on each side, in this line
   float threshold_ = 0.0F;  ///< of the edges' smoothness in this line

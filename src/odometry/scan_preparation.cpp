@@ -70,19 +70,12 @@ void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& p
   collectPoints(returnsOf(scan, parameters), points);
 }
 
-void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges)
+void PreparedScan::takeEdges(std::vector<ScanPoint>& edges) const
 {
-  line_of_point_.assign(scan_size, 0);
-  for (std::size_t m = 0; m < lines.lines(); ++m) {
-    for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
-      line_of_point_[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])] =
-          static_cast<std::uint32_t>(m);
-    }
-  }
   edges.clear();
   for (const Feature& edge : features.edges) {
-    edges.push_back({edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F,
-                     line_of_point_[static_cast<std::size_t>(edge.index)], edge.index});
+    edges.push_back(
+        {edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F, static_cast<std::uint32_t>(edge.line), edge.index});
   }
 }
 

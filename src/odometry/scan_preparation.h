@@ -7,7 +7,6 @@
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
-#include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
@@ -31,13 +30,12 @@ struct PreparedScan {
   [[nodiscard]] ScanReturns returnsOf(const CloudView& scan, const OdometryParameters& parameters) const;
   void takePoints(const CloudView& scan, const OdometryParameters& parameters);
   /// E_k as points, once there are features.
-  void takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges);
+  void takeEdges(std::vector<ScanPoint>& edges) const;
   /// What a map is made of where there are no scan lines, and so no features: points taken by space, as planes.
   void takeForMap(const CloudView& scan, const std::vector<ScanPoint>& by_space);
   void describeIn(OdometryReport& report) const;
 
 private:
-  std::vector<std::uint32_t> line_of_point_;
   bool turns_ = false;  ///< as an earlier scan showed
 };
 

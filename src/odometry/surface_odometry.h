@@ -65,7 +65,7 @@ struct SurfaceOdometry : OdometryRun {
     report.milliseconds.scan_lines = watch.lap();
     sideBySide(
         parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
-    scan.takeEdges(cloud.size, sweep.edges);
+    scan.takeEdges(sweep.edges);
     report.milliseconds.features = watch.lap();
     describeScan();
     if (!scan.lines.valid()) {
