@@ -32,9 +32,12 @@ void ReturnReader::readLine(ReturnBatch& batch)
   const ScanLines& lines = returns_.lines;
   const auto line_end = static_cast<std::size_t>(lines.begin[line_ + 1]);
   const std::size_t end = std::min(line_end, place_ + ReturnBatch::kMost);
+  std::size_t count = 0;  // no longer in memory
   for (; place_ < end; ++place_) {
-    take(static_cast<std::size_t>(lines.index[place_]), static_cast<std::uint32_t>(line_), batch);
+    count += take(static_cast<std::size_t>(lines.index[place_]), count, batch);
   }
+  std::fill_n(batch.laser.begin(), count, static_cast<std::uint32_t>(line_));
+  batch.count = count;
   line_ += place_ == line_end ? 1 : 0;
 }
 
@@ -43,23 +46,24 @@ void ReturnReader::readCloud(ReturnBatch& batch)
   const std::size_t end = std::min(returns_.cloud.size, place_ + ReturnBatch::kMost);
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
-      take(place_, static_cast<std::uint32_t>(place_), batch);
+      batch.laser[batch.count] = static_cast<std::uint32_t>(place_);
+      batch.count += take(place_, batch.count, batch);
     }
   }
 }
 
-void ReturnReader::take(std::size_t i, std::uint32_t laser, ReturnBatch& batch) const
+/// \return 1, or 0 if the point is out of range
+inline std::size_t ReturnReader::take(std::size_t i, std::size_t n, ReturnBatch& batch) const
 {
   const float x = returns_.cloud.x(i);
   const float y = returns_.cloud.y(i);
   const float z = returns_.cloud.z(i);
   const float squared = x * x + y * y + z * z;
-  batch.x[batch.count] = x;
-  batch.y[batch.count] = y;
-  batch.z[batch.count] = z;
-  batch.index[batch.count] = static_cast<std::int32_t>(i);
-  batch.laser[batch.count] = laser;
-  batch.count += squared >= nearest_ && squared <= farthest_ ? 1 : 0;  // refuses NaN, too
+  batch.x[n] = x;
+  batch.y[n] = y;
+  batch.z[n] = z;
+  batch.index[n] = static_cast<std::int32_t>(i);
+  return squared >= nearest_ && squared <= farthest_ ? 1 : 0;  // refuses NaN, too
 }
 
 /// In a loop of its own, for which the type of the time field is found out once.

@@ -34,7 +34,7 @@ public:
 private:
   void readLine(ReturnBatch& batch);
   void readCloud(ReturnBatch& batch);
-  void take(std::size_t i, std::uint32_t laser, ReturnBatch& batch) const;
+  std::size_t take(std::size_t i, std::size_t n, ReturnBatch& batch) const;
 
   const ScanReturns& returns_;
   float nearest_;   // m^2

@@ -169,6 +169,9 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
     findNearest(cells_.leaf(found.cell), offset, nearest);
     return;
   }
+  for (const std::uint32_t child : children) {
+    prefetch(&cells_.content(child), sizeof(children));
+  }
   const unsigned first = octantOf(Eigen::Vector3f(offset - center));
   for (unsigned i = 0; i < 8; ++i) {
     const unsigned child = first ^ i;
