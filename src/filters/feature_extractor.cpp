@@ -6,6 +6,7 @@
 #include "filters/edge_position.h"
 #include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
+#include "filters/point_times.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
 
@@ -246,7 +247,7 @@ private:
     feature.z = line_.points.z[k];
     feature.smoothness = line_.sigma[k];
     feature.index = lines_.index[first_index_ + k];
-    feature.time = timeOf(n);
+    feature.time = 1.0F;  // unless there are times
     feature.line = line_number_;
     feature.intensity = cloud_.intensityOf(static_cast<std::size_t>(feature.index));
     return feature;
@@ -316,6 +317,7 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
     for (std::size_t m = lines.lines() * part / parts; m < lines.lines() * (part + 1) / parts; ++m) {
       selector.select(m);
     }
+    setTimes(cloud, timing, found[part].planes);
   }
   if (parts > 0) {
     std::swap(found.front(), features);

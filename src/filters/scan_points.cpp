@@ -1,6 +1,6 @@
 #include <pcl_floam/filters/scan_points.h>
 
-#include "common/field_type.h"
+#include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
 #include "filters/scan_returns.h"
 #include "filters/vertical_correction.h"
@@ -64,22 +64,6 @@ inline std::size_t ReturnReader::take(std::size_t i, std::size_t n, ReturnBatch&
   batch.z[n] = z;
   batch.index[n] = static_cast<std::int32_t>(i);
   return squared >= nearest_ && squared <= farthest_ ? 1 : 0;  // refuses NaN, too
-}
-
-/// In a loop of its own, for which the type of the time field is found out once.
-void setTimes(const CloudView& cloud, const ScanTiming& timing, std::vector<ScanPoint>& points)
-{
-  if (timing.source == ScanTimingSource::time_field) {
-    withReader(cloud.time, [&](const auto& time_of) {
-      for (ScanPoint& point : points) {
-        point.time = timing.fractionOf(time_of(cloud.point(static_cast<std::size_t>(point.index))));
-      }
-    });
-  } else if (timing.valid()) {
-    for (ScanPoint& point : points) {
-      point.time = timing.at(cloud, static_cast<std::size_t>(point.index));
-    }
-  }
 }
 
 bool ScanReturns::areAtLeast(std::size_t count) const

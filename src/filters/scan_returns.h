@@ -43,7 +43,4 @@ private:
   std::size_t place_ = 0;  // in the lines' list, or in the cloud
 };
 
-/// The times of points, of which the places in the cloud are known.
-void setTimes(const CloudView& cloud, const ScanTiming& timing, std::vector<ScanPoint>& points);
-
 }  // namespace pcl_floam

@@ -1,4 +1,5 @@
 #include "common/multi_version.h"
+#include "filters/point_times.h"
 #include "filters/scan_returns.h"
 
 #include <pcl_floam/filters/scan_points.h>

@@ -159,24 +159,25 @@ Eigen::Vector3d VoxelPyramid::feltAlong(const Eigen::Matrix3d& axes, Found found
 void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const Eigen::Vector3f& offset,
                                Nearest& nearest) const
 {
-  const float half = 0.5F * static_cast<float>(sideOf(found.level));
-  const Eigen::Vector3f outside = ((offset - center).cwiseAbs().array() - half).max(0.0F);
-  if (outside.squaredNorm() >= nearest.squared) {
-    return;
-  }
-  const std::array<std::uint32_t, 8>& children = cells_.content(found.cell).child;
   if (found.level == 0) {
     findNearest(cells_.leaf(found.cell), offset, nearest);
     return;
   }
+  const std::array<std::uint32_t, 8>& children = cells_.content(found.cell).child;
   for (const std::uint32_t child : children) {
     prefetch(&cells_.content(child), sizeof(children));
   }
+  const float half = 0.25F * static_cast<float>(sideOf(found.level));  // of a child
+  const Eigen::Array3f from_center = (offset - center).array();
+  const Eigen::Array3f below = ((from_center + half).abs() - half).max(0.0F).square();
+  const Eigen::Array3f above = ((from_center - half).abs() - half).max(0.0F).square();
   const unsigned first = octantOf(Eigen::Vector3f(offset - center));
   for (unsigned i = 0; i < 8; ++i) {
     const unsigned child = first ^ i;
-    if (children[child] != 0) {
-      findNearest({children[child], found.level - 1}, center + 0.5F * half * towards(child), offset, nearest);
+    const float outside = ((child & 1U) != 0U ? above : below).x() + ((child & 2U) != 0U ? above : below).y() +
+                          ((child & 4U) != 0U ? above : below).z();
+    if (children[child] != 0 && outside < nearest.squared) {
+      findNearest({children[child], found.level - 1}, center + half * towards(child), offset, nearest);
     }
   }
 }
