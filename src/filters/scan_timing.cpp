@@ -120,11 +120,14 @@ bool goesRound(const CloudView& cloud, const ScanLines& lines)
   constexpr std::size_t kSectors = 36;
   constexpr std::size_t kStep = 7;  // points: some thousand are enough; odd, since drivers' habits are even
   std::array<bool, kSectors> is_seen{};
-  for (std::size_t n = 0; n < lines.index.size(); n += kStep) {
+  std::size_t seen = 0;
+  for (std::size_t n = 0; n < lines.index.size() && 2 * seen <= kSectors; n += kStep) {
     const auto i = static_cast<std::size_t>(lines.index[n]);
-    is_seen[static_cast<std::size_t>(azimuthInTurns(cloud.x(i), cloud.y(i)) * kSectors) % kSectors] = true;
+    const auto sector = static_cast<std::size_t>(azimuthInTurns(cloud.x(i), cloud.y(i)) * kSectors) % kSectors;
+    seen += is_seen[sector] ? 0 : 1;
+    is_seen[sector] = true;
   }
-  return 2 * static_cast<std::size_t>(std::count(is_seen.begin(), is_seen.end(), true)) > kSectors;
+  return 2 * seen > kSectors;
 }
 
 namespace {
