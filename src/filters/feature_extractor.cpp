@@ -6,6 +6,7 @@
 #include "filters/edge_position.h"
 #include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
+#include "filters/point_times.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
 
@@ -89,6 +90,7 @@ public:
     if (line_.points.size() <= 2 * neighbors_) {
       return;
     }
+    line_number_ = static_cast<std::int32_t>(m);
     first_index_ = static_cast<std::size_t>(lines_.begin[m]);
     if (neighborhood.is_sparse && parameters_.smoothness == SmoothnessKind::vector_sum) {
       computeSmoothnessAcross(line_.points, neighbors_, line_.sigma);
@@ -245,7 +247,8 @@ private:
     feature.z = line_.points.z[k];
     feature.smoothness = line_.sigma[k];
     feature.index = lines_.index[first_index_ + k];
-    feature.time = timeOf(n);
+    feature.time = 1.0F;  // unless there are times
+    feature.line = line_number_;
     feature.intensity = cloud_.intensityOf(static_cast<std::size_t>(feature.index));
     return feature;
   }
@@ -264,6 +267,7 @@ private:
   const std::vector<std::uint8_t>& selectable_;
   LineScratch& line_;
   FeatureSet& features_;
+  std::int32_t line_number_ = 0;
   std::size_t first_index_ = 0;
   int neighbors_ = 0;       ///< on each side, in this line
   float threshold_ = 0.0F;  ///< of the edges' smoothness in this line
@@ -313,6 +317,7 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
     for (std::size_t m = lines.lines() * part / parts; m < lines.lines() * (part + 1) / parts; ++m) {
       selector.select(m);
     }
+    setTimes(cloud, timing, found[part].planes);
   }
   if (parts > 0) {
     std::swap(found.front(), features);

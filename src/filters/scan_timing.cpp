@@ -1,7 +1,9 @@
 #include <pcl_floam/filters/scan_timing.h>
 
 #include "common/field_type.h"
+#include "common/multi_version.h"
 #include "filters/azimuth.h"
+#include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
@@ -118,11 +120,14 @@ bool goesRound(const CloudView& cloud, const ScanLines& lines)
   constexpr std::size_t kSectors = 36;
   constexpr std::size_t kStep = 7;  // points: some thousand are enough; odd, since drivers' habits are even
   std::array<bool, kSectors> is_seen{};
-  for (std::size_t n = 0; n < lines.index.size(); n += kStep) {
+  std::size_t seen = 0;
+  for (std::size_t n = 0; n < lines.index.size() && 2 * seen <= kSectors; n += kStep) {
     const auto i = static_cast<std::size_t>(lines.index[n]);
-    is_seen[static_cast<std::size_t>(azimuthInTurns(cloud.x(i), cloud.y(i)) * kSectors) % kSectors] = true;
+    const auto sector = static_cast<std::size_t>(azimuthInTurns(cloud.x(i), cloud.y(i)) * kSectors) % kSectors;
+    seen += is_seen[sector] ? 0 : 1;
+    is_seen[sector] = true;
   }
-  return 2 * static_cast<std::size_t>(std::count(is_seen.begin(), is_seen.end(), true)) > kSectors;
+  return 2 * seen > kSectors;
 }
 
 namespace {
@@ -179,26 +184,46 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotat
   return true;
 }
 
-double azimuthFraction(const ScanTiming& timing, const CloudView& cloud, std::size_t i)
+/// Fractions of a turn since the start.
+PCL_FLOAM_MULTI_VERSION
+void fractionsOfATurn(double start, bool clockwise, std::size_t count, const float* x, const float* y,
+                      double* fractions)
 {
-  const double azimuth = azimuthInTurns(cloud.x(i), cloud.y(i));
-  const double start = timing.start_azimuth / kTwoPi;
-  double fraction = timing.clockwise ? start - azimuth : azimuth - start;
-  fraction -= std::floor(fraction);
-  if (timing.firing_order) {
-    // Around the seam the same azimuth comes twice; the place in the cloud tells which of the two it is.
-    const double place = static_cast<double>(i) / static_cast<double>(cloud.size);
-    if (fraction > 0.75 && place < 0.25) {
-      return 0.0;
-    }
-    if (fraction < 0.25 && place > 0.75) {
-      return 1.0;
-    }
+  const double sign = clockwise ? -1.0 : 1.0;
+  for (std::size_t n = 0; n < count; ++n) {
+    const double since = sign * (static_cast<double>(azimuthInTurns(x[n], y[n])) - start);
+    fractions[n] = since - std::floor(since);
   }
-  return fraction;
+}
+
+/// Around the seam the same azimuth comes twice; the place in the cloud tells which of the two it is.
+double besideSeam(double fraction, double place)
+{
+  if (fraction > 0.75 && place < 0.25) {
+    return 0.0;
+  }
+  return fraction < 0.25 && place > 0.75 ? 1.0 : fraction;
 }
 
 }  // namespace
+
+void timesByAzimuth(const CloudView& cloud, const ScanTiming& timing, const std::int32_t* index, std::size_t count,
+                    float* times)
+{
+  std::array<float, kTimesAtOnce> x{};
+  std::array<float, kTimesAtOnce> y{};
+  std::array<double, kTimesAtOnce> fractions;
+  for (std::size_t n = 0; n < count; ++n) {
+    x[n] = cloud.x(static_cast<std::size_t>(index[n]));
+    y[n] = cloud.y(static_cast<std::size_t>(index[n]));
+  }
+  fractionsOfATurn(timing.start_azimuth / kTwoPi, timing.clockwise, count, x.data(), y.data(), fractions.data());
+  for (std::size_t n = 0; n < count; ++n) {
+    const double place = static_cast<double>(index[n]) / static_cast<double>(cloud.size);
+    const double fraction = timing.firing_order ? besideSeam(fractions[n], place) : fractions[n];
+    times[n] = std::isfinite(fraction) ? static_cast<float>(fraction) : 1.0F;
+  }
+}
 
 float ScanTiming::at(const CloudView& cloud, std::size_t i) const
 {
@@ -208,7 +233,12 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
     case ScanTimingSource::columns:
       fraction = static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1);
       break;
-    case ScanTimingSource::azimuth: fraction = azimuthFraction(*this, cloud, i); break;
+    case ScanTimingSource::azimuth: {
+      const auto index = static_cast<std::int32_t>(i);
+      float time = 0.0F;
+      timesByAzimuth(cloud, *this, &index, 1, &time);
+      return time;
+    }
     case ScanTimingSource::automatic:
     case ScanTimingSource::none: break;
   }

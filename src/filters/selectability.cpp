@@ -21,7 +21,7 @@ constexpr float kGrazingSpacing = 0.0141F;
 constexpr float kGrazingDepth = 0.8F;
 
 /// Steps looked at together: most stretches of a line have no depth step at all.
-constexpr std::size_t kStretch = 16;
+constexpr std::size_t kStretch = 256;
 
 PCL_FLOAM_MULTI_VERSION
 void markOutOfRange(std::size_t count, const float* range, float min_range, float max_range, std::int32_t* unfit)

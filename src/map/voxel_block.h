@@ -61,6 +61,11 @@ public:
         return false;
       }
     }
+    constexpr std::size_t kFew = 8;  // most blocks have more
+    if (voxels_.empty()) {
+      voxels_.reserve(kFew);
+      groups_.reserve(kFew / kLanes);
+    }
     if (voxels_.size() % kLanes == 0) {
       groups_.emplace_back();
     }

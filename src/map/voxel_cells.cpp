@@ -58,15 +58,12 @@ std::uint32_t VoxelCells::make(const VoxelKey& finest, int level)
 
 void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser, std::uint32_t keyframe)
 {
-  Leaf& leaf = leaves_[contents_[cell].child[0]];
-  leaf.x[leaf.count] = point.x();
-  leaf.y[leaf.count] = point.y();
-  leaf.z[leaf.count] = point.z();
-  ++leaf.count;
+  leaves_[contents_[cell].child[0]].add(point);
   const Eigen::Vector3d p = point.cast<double>();
   for (; cell != 0; cell = cells_[cell].parent) {
     constexpr std::uint32_t kMost = std::numeric_limits<std::uint16_t>::max();
     CellSums& sums = contents_[cell].sums;
+    contents_[cell].felt_beside.store(0, std::memory_order_relaxed);
     sums.add(p.x(), p.y(), p.z(), laser);
     cells_[cell].support.add(laser, keyframe);
     cells_[cell].count = static_cast<std::uint16_t>(std::min(sums.count, kMost));

@@ -10,6 +10,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -46,16 +47,62 @@ public:
   /// Of its shape; the kinds of surface follow.
   enum State : std::uint8_t { kStale, kBeingMade, kKnown };
 
-  /// What else there is to it.
-  struct Content {
-    CellSums sums;
+  /// What else there is to it; first what a search for the nearest point reads.
+  struct alignas(64) Content {
     std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
+    /// Of a shape that is neither plane nor line: how much is felt along each of its axes, known for so many points of
+    /// the parent, and one.
+    mutable std::array<double, 3> felt{};
+    mutable std::atomic<std::uint32_t> felt_beside{0};
     mutable std::array<float, 9> axes{};
+    CellSums sums;
+
+    Content() = default;
+    ~Content() = default;
+    Content(const Content& other) : Content() { *this = other; }
+    Content& operator=(const Content& other)
+    {
+      child = other.child;
+      felt = other.felt;
+      axes = other.axes;
+      sums = other.sums;
+      felt_beside.store(other.felt_beside.load());
+      return *this;
+    }
   };
-  /// The points of a finest cell, from the centre of its block, m.
-  struct Leaf {
-    std::array<float, kPointsPerLeaf> x{}, y{}, z{};
+  /// The points of a finest cell, from the centre of its block, m. Those that are not there are infinitely far.
+  struct alignas(64) Leaf {
+    static constexpr std::size_t kLanes = 4;  ///< points of a group lie side by side
+    struct Group {
+      std::array<float, kLanes> x, y, z;
+    };
+
+    Leaf()
+    {
+      for (Group& group : groups) {
+        group.x.fill(std::numeric_limits<float>::infinity());
+        group.y.fill(0.0F);
+        group.z.fill(0.0F);
+      }
+    }
+    [[nodiscard]] std::size_t used() const { return (count + kLanes - 1) / kLanes; }
+    [[nodiscard]] Eigen::Vector3f point(std::size_t i) const
+    {
+      const Group& group = groups[i / kLanes];
+      return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
+    }
+    void add(const Eigen::Vector3f& point)
+    {
+      Group& group = groups[count / kLanes];
+      group.x[count % kLanes] = point.x();
+      group.y[count % kLanes] = point.y();
+      group.z[count % kLanes] = point.z();
+      ++count;
+    }
+
     std::uint32_t count = 0;
+    std::array<Group, kPointsPerLeaf / kLanes> groups;
+    static_assert(kPointsPerLeaf % kLanes == 0, "groups are full");
   };
   /// A cell around a place.
   struct Found {

@@ -48,6 +48,8 @@ public:
   void clear();
 
 private:
+  static constexpr std::size_t kAtOnce = 32;  ///< places that are looked up side by side
+
   /// A place by its finest cell, and from the centre of the block that holds it.
   struct Place {
     VoxelKey key;
@@ -61,15 +63,23 @@ private:
     Eigen::Vector3f place = Eigen::Vector3f::Zero();
     float squared = std::numeric_limits<float>::infinity();
   };
+  /// Of a cell, or what was just worked out for it.
+  struct Fit {
+    SurfaceKind kind;
+    const CellShape& shape;
+    const std::array<float, 9>& axes;
+  };
 
   bool findPlace(const Eigen::Vector3d& point, Place& place) const;
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
   bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
-  CellFit fitOf(std::uint32_t cell) const;
+  Fit fitOf(std::uint32_t cell, CellFit& own) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
-  void surfaceIn(Found found, const Place& place, const CellFit& fit, Surface& surface) const;
-  [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const CellFit& fit) const;
+  void surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const;
+  [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const std::array<float, 9>& axes) const;
+  [[nodiscard]] Eigen::Vector3d feltAlong(const Eigen::Matrix3d& axes, Found found) const;
+  [[nodiscard]] bool isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const;
   void findNearest(Found cell, const Eigen::Vector3f& center, const Eigen::Vector3f& offset, Nearest& nearest) const;
   static void findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest);
   [[nodiscard]] double sideOf(int level) const { return side_ * (1 << level); }

@@ -244,8 +244,7 @@ struct FeatureOdometry : OdometryRun {
     if (scans_to_wait > 0) {
       --scans_to_wait;
     } else {
-      scan.takePoints(cloud, parameters);
-      report.keyframe = map_building.add(scan, pose, parameters);
+      report.keyframe = map_building.add(cloud, scan, pose, parameters);
     }
   }
 

@@ -4,6 +4,8 @@
 
 #include <pcl_floam/filters/sweep_motion.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -23,10 +25,17 @@ std::vector<Eigen::Vector3f> undistorted(const std::vector<ScanPoint>& measured,
 {
   const MovingSensor sensor(SE3(), pose.twist, pose.acceleration);
   std::vector<Eigen::Vector3f> points(measured.size());
+  constexpr std::ptrdiff_t kTogether = 256;
+  const auto count = static_cast<std::ptrdiff_t>(points.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(points.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    points[i] = sensor.undistorted(measured[i]).cast<float>();
+  for (std::ptrdiff_t begin = 0; begin < count; begin += kTogether) {
+    const auto first = static_cast<std::size_t>(begin);
+    const auto some = static_cast<std::size_t>(std::min(kTogether, count - begin));
+    std::array<Eigen::Vector3d, kTogether> places;
+    sensor.undistorted(&measured[first], 1, some, places.data());
+    for (std::size_t i = 0; i < some; ++i) {
+      points[first + i] = places[i].cast<float>();
+    }
   }
   return points;
 }
@@ -74,12 +83,14 @@ bool MapBuilding::add(const FeatureSet& measured, const SweepPose& world_T_senso
 
 /// Cars and people leave the places where earlier scans saw them. All of a scan's points tell of that, so it is looked
 /// at only now and then.
-bool MapBuilding::add(const PreparedScan& scan, const SweepPose& world_T_sensor, const OdometryParameters& parameters)
+bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPose& world_T_sensor,
+                      const OdometryParameters& parameters)
 {
   constexpr int kKeyframesBetween = 7;
   const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
   if (is_keyframe) {
     if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
+      scan.takePoints(cloud, parameters);
       map_.forgetSeenThrough(undistorted(scan.points, world_T_sensor, parameters.threads), world_T_sensor.middle,
                              parameters.threads);
     }

@@ -32,7 +32,8 @@ public:
   bool add(const FeatureSet& measured, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
 
   /// The same with all that a scan tells: what its returns see through has gone.
-  bool add(const PreparedScan& scan, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
+  bool add(const CloudView& cloud, PreparedScan& scan, const SweepPose& world_T_sensor,
+           const OdometryParameters& parameters);
 
 private:
   [[nodiscard]] bool takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const;

@@ -1,7 +1,7 @@
 #include "odometry/scan_preparation.h"
 
 #include "filters/scan_line_finders.h"
-#include "odometry/vertical_correction.h"
+#include "filters/vertical_correction.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
 
@@ -55,26 +55,27 @@ void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters&
   correctVerticalAngle(parameters.vertical_correction, features);
 }
 
-void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
+ScanReturns PreparedScan::returnsOf(const CloudView& scan, const OdometryParameters& parameters) const
 {
-  collectPoints(scan, lines, timing, static_cast<double>(parameters.features.min_range),
-                static_cast<double>(parameters.features.max_range), points);
-  correctVerticalAngle(parameters.vertical_correction, points);
+  return {scan,
+          lines,
+          timing,
+          static_cast<double>(parameters.features.min_range),
+          static_cast<double>(parameters.features.max_range),
+          parameters.vertical_correction};
 }
 
-void PreparedScan::takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges)
+void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
 {
-  line_of_point_.assign(scan_size, 0);
-  for (std::size_t m = 0; m < lines.lines(); ++m) {
-    for (std::int32_t n = lines.begin[m]; n < lines.begin[m + 1]; ++n) {
-      line_of_point_[static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)])] =
-          static_cast<std::uint32_t>(m);
-    }
-  }
+  collectPoints(returnsOf(scan, parameters), points);
+}
+
+void PreparedScan::takeEdges(std::vector<ScanPoint>& edges) const
+{
   edges.clear();
   for (const Feature& edge : features.edges) {
-    edges.push_back({edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F,
-                     line_of_point_[static_cast<std::size_t>(edge.index)], edge.index});
+    edges.push_back(
+        {edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F, static_cast<std::uint32_t>(edge.line), edge.index});
   }
 }
 

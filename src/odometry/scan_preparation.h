@@ -7,7 +7,6 @@
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
-#include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
@@ -18,7 +17,7 @@ struct PreparedScan {
   ScanTiming timing;
   double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
   FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
-  std::vector<ScanPoint> points;  ///< all returns
+  std::vector<ScanPoint> points;  ///< all returns, if they were asked for
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
@@ -28,15 +27,15 @@ struct PreparedScan {
   bool supposeTimes(const CloudView& scan, const OdometryParameters& parameters);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
   /// Apart from the features, so that both can be taken at a time.
+  [[nodiscard]] ScanReturns returnsOf(const CloudView& scan, const OdometryParameters& parameters) const;
   void takePoints(const CloudView& scan, const OdometryParameters& parameters);
   /// E_k as points, once there are features.
-  void takeEdges(std::size_t scan_size, std::vector<ScanPoint>& edges);
+  void takeEdges(std::vector<ScanPoint>& edges) const;
   /// What a map is made of where there are no scan lines, and so no features: points taken by space, as planes.
   void takeForMap(const CloudView& scan, const std::vector<ScanPoint>& by_space);
   void describeIn(OdometryReport& report) const;
 
 private:
-  std::vector<std::uint32_t> line_of_point_;
   bool turns_ = false;  ///< as an earlier scan showed
 };
 

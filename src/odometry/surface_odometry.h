@@ -25,6 +25,7 @@ struct SurfaceOdometry : OdometryRun {
   Tracker tracker;
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
+  bool has_enough_points = false;
   FirstPoses first_poses;               ///< until it is decided how the sensor moved
   std::vector<FeatureSet> first_scans;  ///< their features, as measured
 
@@ -35,7 +36,7 @@ struct SurfaceOdometry : OdometryRun {
     if (lacksStructure()) {
       return predictOnly(toString(scan.lines.failure));
     }
-    if (!hasEnoughPoints()) {
+    if (!has_enough_points) {
       return predictOnly("too few points");
     }
     if (!tracker.hasBegun() && !map_building.hasPrior()) {
@@ -46,7 +47,7 @@ struct SurfaceOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return predictOnly(toString(report.registration.termination));
     }
-    updateMap();
+    updateMap(cloud);
     finish(judge());
   }
 
@@ -64,7 +65,7 @@ struct SurfaceOdometry : OdometryRun {
     report.milliseconds.scan_lines = watch.lap();
     sideBySide(
         parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
-    scan.takeEdges(cloud.size, sweep.edges);
+    scan.takeEdges(sweep.edges);
     report.milliseconds.features = watch.lap();
     describeScan();
     if (!scan.lines.valid()) {
@@ -74,9 +75,11 @@ struct SurfaceOdometry : OdometryRun {
 
   void samplePoints(const CloudView& cloud)
   {
-    scan.takePoints(cloud, parameters);
-    if (!lacksStructure() && hasEnoughPoints()) {
-      tracker.sample(scan.points, sweep);
+    constexpr std::size_t kFewest = 20;
+    const ScanReturns returns = scan.returnsOf(cloud, parameters);
+    has_enough_points = returns.areAtLeast(kFewest);
+    if (!lacksStructure() && has_enough_points) {
+      tracker.sample(returns, sweep);
     } else {
       sweep.dense.clear();  // the last scan's
       sweep.sample.clear();
@@ -101,12 +104,6 @@ struct SurfaceOdometry : OdometryRun {
       return TrackingState::doubtful;
     }
     return toldState();
-  }
-
-  [[nodiscard]] bool hasEnoughPoints() const
-  {
-    constexpr std::size_t kFewest = 20;
-    return scan.points.size() >= kFewest;
   }
 
   /// The first scan: its motion is found with the second.
@@ -201,12 +198,12 @@ struct SurfaceOdometry : OdometryRun {
     }
   }
 
-  void updateMap()
+  void updateMap(const CloudView& cloud)
   {
     const SweepPose world_T_sweep = inWorld(tracker.track().pose());
     sideBySide(
         parameters.threads, [&] { tracker.updateMap(sweep); },
-        [&] { report.keyframe = map_building.add(scan, world_T_sweep, parameters); });
+        [&] { report.keyframe = map_building.add(cloud, scan, world_T_sweep, parameters); });
     report.milliseconds.map += watch.lap();
   }
 

@@ -2,6 +2,9 @@
 
 #include "registration/sweep_points.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -11,16 +14,19 @@ namespace {
 
 void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
 {
-  std::vector<Eigen::Vector3d> places;
-  std::vector<std::uint32_t> lasers;
-  places.reserve(points.size());
-  lasers.reserve(points.size());
-  for (const ScanPoint& point : points) {
-    places.push_back(sensor.at(point));
-    lasers.push_back(point.laser);
-  }
+  constexpr std::size_t kTogether = 256;
+  std::array<Eigen::Vector3d, kTogether> places;
+  std::array<std::uint32_t, kTogether> lasers;
   map.beginKeyframe();
-  map.insert(places.data(), lasers.data(), places.size());
+  for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
+    const std::size_t count = std::min(kTogether, points.size() - begin);
+    sensor.undistorted(&points[begin], 1, count, places.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      places[i] = sensor.pose() * places[i];
+      lasers[i] = points[begin + i].laser;
+    }
+    map.insert(places.data(), lasers.data(), count);
+  }
 }
 
 }  // namespace

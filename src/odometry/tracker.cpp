@@ -140,6 +140,18 @@ void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
   sampling_.sample(sweep.dense, side_, sweep.sample);
 }
 
+void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
+{
+  if (side_ == 0.0) {
+    std::vector<ScanPoint> points;
+    collectPoints(returns, points);
+    sample(points, sweep);
+    return;
+  }
+  sampling_.sample(returns, kMapSpacing * side_, sweep.dense);
+  sampling_.sample(sweep.dense, side_, sweep.sample);
+}
+
 Tracker::Outcome Tracker::step(const Sweep& sweep)
 {
   if (!isTracking()) {

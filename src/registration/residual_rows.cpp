@@ -3,6 +3,8 @@
 #include "common/multi_version.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 
 namespace pcl_floam {
 
@@ -11,27 +13,51 @@ namespace {
 /// Sums are kept apart by row modulo this number, whatever the processor's registers hold.
 constexpr std::size_t kLanes = 4;
 
+/// As many numbers, told to the compiler: it would shuffle loops over them.
+using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+
+inline void load(const double* from, Lanes& to)
+{
+  std::memcpy(&to, from, sizeof(to));
+}
+
+inline void addUp(const Lanes& lanes, double& sum)
+{
+  sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+/// For each of three weights.
 struct ThreeSums {
   double of[3];
 };
 
-/// Of a b w for each of three weights. \param n a multiple of the lanes
+/// Of a b w and a c w for each of three weights. \param n a multiple of the lanes
 PCL_FLOAM_MULTI_VERSION
-ThreeSums weightedProducts(const double* a, const double* b, const double* w0, const double* w1, const double* w2,
-                           std::size_t n)
+void weightedProducts(const double* a, const double* b, const double* c, const std::array<const double*, 3>& w,
+                      std::size_t n, ThreeSums& with_b, ThreeSums& with_c)
 {
-  double s0[kLanes] = {};
-  double s1[kLanes] = {};
-  double s2[kLanes] = {};
+  Lanes sums_b[3] = {};
+  Lanes sums_c[3] = {};
   for (std::size_t i = 0; i < n; i += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const double product = a[i + lane] * b[i + lane];
-      s0[lane] += w0[i + lane] * product;
-      s1[lane] += w1[i + lane] * product;
-      s2[lane] += w2[i + lane] * product;
+    Lanes left;
+    Lanes right_b;
+    Lanes right_c;
+    load(a + i, left);
+    load(b + i, right_b);
+    load(c + i, right_c);
+    right_b *= left;
+    right_c *= left;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Lanes weight;
+      load(w[k] + i, weight);
+      sums_b[k] += weight * right_b;
+      sums_c[k] += weight * right_c;
     }
   }
-  return {{(s0[0] + s0[1]) + (s0[2] + s0[3]), (s1[0] + s1[1]) + (s1[2] + s1[3]), (s2[0] + s2[1]) + (s2[2] + s2[3])}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    addUp(sums_b[k], with_b.of[k]);
+    addUp(sums_c[k], with_c.of[k]);
+  }
 }
 
 }  // namespace
@@ -41,10 +67,10 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
 {
   const Eigen::Vector3d turn = arm.cross(normal);
   for (std::size_t i = 0; i < 3; ++i) {
-    jacobian_[i][size_] = normal[static_cast<Eigen::Index>(i)];
-    jacobian_[i + 3][size_] = turn[static_cast<Eigen::Index>(i)];
+    column_[i][size_] = normal[static_cast<Eigen::Index>(i)];
+    column_[i + 3][size_] = turn[static_cast<Eigen::Index>(i)];
   }
-  residual_[size_] = residual;
+  column_[kResidual][size_] = residual;
   weight_[0][size_] = weight;
   weight_[1][size_] = since_middle * weight;
   weight_[2][size_] = since_middle * since_middle * weight;
@@ -56,26 +82,28 @@ void ResidualRows::addTo(NormalEquations& equations)
   while (size_ % kLanes != 0) {
     add(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, 0.0, 0.0);
   }
-  const auto sumsOf = [this](const Column& a, const Column& b) {
-    return weightedProducts(a.data(), b.data(), weight_[0].data(), weight_[1].data(), weight_[2].data(), size_);
-  };
-  for (std::size_t i = 0; i < 6; ++i) {
+  const std::array<const double*, 3> weights = {weight_[0].data(), weight_[1].data(), weight_[2].data()};
+  std::array<ThreeSums, kColumns + 1> sums;
+  for (std::size_t i = 0; i < kResidual; ++i) {
+    for (std::size_t j = i; j < kColumns; j += 2) {
+      const std::size_t next = std::min(j + 1, kResidual);
+      weightedProducts(column_[i].data(), column_[j].data(), column_[next].data(), weights, size_, sums[j],
+                       sums[j + 1]);
+    }
     const auto row = static_cast<Eigen::Index>(i);
-    for (std::size_t j = i; j < 6; ++j) {
+    for (std::size_t j = i; j < kResidual; ++j) {
       const auto column = static_cast<Eigen::Index>(j);
-      const ThreeSums sums = sumsOf(jacobian_[i], jacobian_[j]);
-      equations.information(row, column) += sums.of[0];
-      equations.coupling(row, column) += sums.of[1];
-      equations.twist_information(row, column) += sums.of[2];
+      equations.information(row, column) += sums[j].of[0];
+      equations.coupling(row, column) += sums[j].of[1];
+      equations.twist_information(row, column) += sums[j].of[2];
       if (i != j) {
-        equations.information(column, row) += sums.of[0];
-        equations.coupling(column, row) += sums.of[1];
-        equations.twist_information(column, row) += sums.of[2];
+        equations.information(column, row) += sums[j].of[0];
+        equations.coupling(column, row) += sums[j].of[1];
+        equations.twist_information(column, row) += sums[j].of[2];
       }
     }
-    const ThreeSums sums = sumsOf(jacobian_[i], residual_);
-    equations.gradient[row] += sums.of[0];
-    equations.twist_gradient[row] += sums.of[1];
+    equations.gradient[row] += sums[kResidual].of[0];
+    equations.twist_gradient[row] += sums[kResidual].of[1];
   }
 }
 

@@ -27,9 +27,11 @@ public:
 private:
   using Column = std::array<double, kRoom>;
 
+  static constexpr std::size_t kResidual = 6;  ///< its column, after those of the derivative
+  static constexpr std::size_t kColumns = 7;
+
   std::size_t size_ = 0;
-  std::array<Column, 6> jacobian_;
-  Column residual_;
+  std::array<Column, kColumns> column_;
   std::array<Column, 3> weight_;  ///< times the time since mid-sweep to the power of 0, 1, 2
 };
 

@@ -212,7 +212,7 @@ private:
                                        : Vector6(Vector6::Zero());
   }
 
-  [[nodiscard]] SurfaceSums accumulate(double look, std::size_t stride) const
+  [[nodiscard]] SurfaceSums accumulate(double look, std::size_t stride)
   {
     SurfaceResiduals residuals{MovingSensor(pose_, twist(), acceleration())};
     residuals.reach = look * look * problem_.reach;
@@ -221,9 +221,7 @@ private:
     residuals.open = pose_.rotation * problem_.open;
     residuals.weighs_evidence = weighs_evidence_;
     residuals.threads = problem_.threads;
-    SurfaceSums sums = residuals.sumsOf(problem_.scan, stride);
-    sums.add(residuals.sumsOf(problem_.edges, 1));
-    return sums;
+    return residuals.sumsOf(problem_.scan, problem_.edges, stride, parts_);
   }
 
   struct Equations {
@@ -273,6 +271,7 @@ private:
   Square12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
+  std::vector<SurfaceSums> parts_;
   std::vector<WeakDirection> weak_;
   Square6 strong_ = Square6::Identity();  // projects on all other directions
 };

@@ -26,14 +26,43 @@ constexpr double kKernelWidth = 2.0;
 constexpr std::size_t kPointsPerChunk = 64;
 static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
 
-/// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x).
+/// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x); the upper half.
 void addNormalsNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
 {
-  noise.topLeftCorner<3, 3>().diagonal().array() += variance;
-  noise.topRightCorner<3, 3>() -= variance * skew(arm);
-  noise.bottomLeftCorner<3, 3>() += variance * skew(arm);
-  noise.bottomRightCorner<3, 3>() +=
-      variance * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  const Eigen::Vector3d turned = variance * arm;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Index next = (i + 1) % 3;
+    const Eigen::Index last = (i + 2) % 3;
+    noise(i, i) += variance;
+    noise(i, 3 + next) += turned[last];
+    noise(i, 3 + last) -= turned[next];
+    noise(3 + i, 3 + i) += variance * (arm.squaredNorm() - arm[i] * arm[i]);
+    noise(3 + std::min(i, next), 3 + std::max(i, next)) -= variance * (arm[i] * arm[next]);
+  }
+}
+
+void mirrorUpperHalf(Matrix6& m)
+{
+  for (Eigen::Index row = 1; row < 6; ++row) {
+    for (Eigen::Index column = 0; column < row; ++column) {
+      m(row, column) = m(column, row);
+    }
+  }
+}
+
+std::size_t chunksOf(const SurfaceTerm& term, std::size_t stride)
+{
+  const bool is_given = term.points != nullptr && term.target != nullptr;
+  const std::size_t count = is_given ? (term.points->size() + stride - 1) / stride : 0;
+  return (count + kPointsPerChunk - 1) / kPointsPerChunk;
+}
+
+template <typename Iterator>
+SurfaceSums totalOf(Iterator begin, Iterator end)
+{
+  SurfaceSums total;
+  std::for_each(begin, end, [&total](const SurfaceSums& part) { total.add(part); });
+  return total;
 }
 
 }  // namespace
@@ -58,43 +87,42 @@ void SurfaceSums::add(const SurfaceSums& other)
   fits += other.fits;
 }
 
-SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& term, std::size_t stride) const
+SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
+                                     std::vector<SurfaceSums>& parts) const
 {
-  SurfaceSums sums;
-  if (term.points == nullptr || term.target == nullptr) {
-    return sums;
-  }
-  const std::size_t count = (term.points->size() + stride - 1) / stride;
-  std::vector<SurfaceSums> parts((count + kPointsPerChunk - 1) / kPointsPerChunk);
+  const std::size_t of_scan = chunksOf(scan, stride);
+  parts.resize(of_scan + chunksOf(edges, 1));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
     const auto c = static_cast<std::size_t>(part);
-    addChunk(term, c * kPointsPerChunk, std::min(count, (c + 1) * kPointsPerChunk), stride, parts[c]);
+    parts[c] = c < of_scan ? chunkOf(scan, c, stride) : chunkOf(edges, c - of_scan, 1);
   }
-  for (const SurfaceSums& part : parts) {
-    sums.add(part);
-  }
+  const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
+  SurfaceSums sums = totalOf(parts.begin(), middle);
+  sums.add(totalOf(middle, parts.end()));
   return sums;
 }
 
-void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std::size_t end, std::size_t stride,
-                                SurfaceSums& sums) const
+SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const
 {
+  const std::size_t begin = chunk * kPointsPerChunk;
+  const std::size_t end = std::min((term.points->size() + stride - 1) / stride, begin + kPointsPerChunk);
+  SurfaceSums sums;
   std::array<Eigen::Vector3d, kPointsPerChunk> places;
   std::array<PlacedPoint, kPointsPerChunk> placed;
-  std::array<std::uint32_t, kPointsPerChunk> lasers{};
+  std::array<std::uint32_t, kPointsPerChunk> lasers;
   std::array<Surface, kPointsPerChunk> surfaces;
   ResidualRows rows;
-  places.fill(Eigen::Vector3d::Zero());
   const SE3& pose = sensor.pose();
-  for (std::size_t i = begin; i < end; ++i) {
-    const ScanPoint& point = (*term.points)[i * stride];
-    PlacedPoint& p = placed[i - begin];
-    p.arm = pose.rotation * sensor.undistorted(point);
-    p.place = places[i - begin] = pose.translation + p.arm;
-    p.since_middle = periods * MovingSensor::sinceMiddle(point);
+  const ScanPoint* points = term.points->data() + begin * stride;
+  sensor.undistorted(points, stride, end - begin, places.data());
+  for (std::size_t i = 0; i < end - begin; ++i) {
+    PlacedPoint& p = placed[i];
+    p.arm = pose.rotation * places[i];
+    p.place = places[i] = pose.translation + p.arm;
+    p.since_middle = periods * MovingSensor::sinceMiddle(points[i * stride]);
     // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
-    lasers[i - begin] = weighs_evidence ? kNoLaser : point.laser;
+    lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
@@ -106,6 +134,8 @@ void SurfaceResiduals::addChunk(const SurfaceTerm& term, std::size_t begin, std:
     }
   }
   rows.addTo(sums.equations);
+  mirrorUpperHalf(sums.equations.noise_information);
+  return sums;
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.

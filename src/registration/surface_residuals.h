@@ -7,6 +7,7 @@
 #include "registration/sweep_points.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -42,12 +43,13 @@ struct SurfaceResiduals {
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
-  /// \param stride one point in so many
-  [[nodiscard]] SurfaceSums sumsOf(const SurfaceTerm& term, std::size_t stride) const;
+  /// \param stride one of the scan's points in so many
+  /// \param parts room for the chunks' sums
+  [[nodiscard]] SurfaceSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
+                                   std::vector<SurfaceSums>& parts) const;
 
 private:
-  void addChunk(const SurfaceTerm& term, std::size_t begin, std::size_t end, std::size_t stride,
-                SurfaceSums& sums) const;
+  [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const;
   void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const;
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;

@@ -5,6 +5,8 @@
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/scan_points.h>
 
+#include <cstddef>
+
 namespace pcl_floam {
 
 /// The sensor's pose in the middle of a sweep, and its motion during it: T(u) = T exp(u xi + u^2 alpha / 2) for u in
@@ -27,18 +29,16 @@ public:
   /// Time from the sweep's middle, in sweeps.
   [[nodiscard]] static double sinceMiddle(const ScanPoint& point) { return static_cast<double>(point.time) - 0.5; }
 
-  /// The place of a point in the sensor's frame of mid-sweep. The exponential's series to fourth order: half a sweep at
-  /// a turn of 360 degrees a second leaves 3e-6 of the range.
+  /// The place of a point in the sensor's frame of mid-sweep.
   [[nodiscard]] Eigen::Vector3d undistorted(const ScanPoint& point) const
   {
-    const double u = sinceMiddle(point);
-    const Eigen::Vector3d p(point.x, point.y, point.z);
-    const Eigen::Vector3d turn = turn_ + u * half_turn_acceleration_;
-    const Eigen::Vector3d first = u * (turn.cross(p) + velocity_ + u * half_acceleration_);
-    const Eigen::Vector3d second = (0.5 * u) * turn.cross(first);
-    const Eigen::Vector3d third = (u / 3.0) * turn.cross(second);
-    return p + first + second + third + (0.25 * u) * turn.cross(third);
+    Eigen::Vector3d place;
+    undistorted(&point, 1, 1, &place);
+    return place;
   }
+
+  /// The same for \p count points, each \p stride after the one before.
+  void undistorted(const ScanPoint* points, std::size_t stride, std::size_t count, Eigen::Vector3d* places) const;
 
   /// The place of a point in the target's frame.
   [[nodiscard]] Eigen::Vector3d at(const ScanPoint& point) const { return pose_ * undistorted(point); }

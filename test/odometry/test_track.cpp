@@ -27,7 +27,7 @@ Prepared prepared(int k)
   scan.takePoints(viewOf(cloud), OdometryParameters());
   scan.takeFeatures(viewOf(cloud), OdometryParameters());
   std::vector<ScanPoint> edges;
-  scan.takeEdges(cloud.size(), edges);
+  scan.takeEdges(edges);
   return {scan.points, edges};
 }
 

@@ -66,7 +66,7 @@ protected:
     pcl_floam::Sweep sweep;
     sampling_.sample(scan.points, kMapSpacing * side_, sweep.dense);
     sampling_.sample(sweep.dense, side_, sweep.sample);
-    scan.takeEdges(view.size, sweep.edges);
+    scan.takeEdges(sweep.edges);
     sweep.fraction = scan.sweep_fraction;
     return sweep;
   }

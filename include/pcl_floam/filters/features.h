@@ -19,6 +19,7 @@ struct Feature {
   float smoothness = 0.0F;  ///< sigma of Eq. 1, m
   std::int32_t index = -1;  ///< of the point in its cloud; of an edge, the sharpest
   float intensity = 0.0F;   ///< of that point; 0 if the cloud has none
+  std::int32_t line = -1;   ///< number of its scan line; -1: of none
 };
 
 /// The feature sets E_k and S_k of one scan.

@@ -22,10 +22,21 @@ struct ScanPoint {
   std::int32_t index = -1;  ///< of the point in its cloud
 };
 
-/// All returns between two distances from the sensor, line after line; without scan lines in the cloud's order.
+/// All returns of a scan between two distances from the sensor, line after line; without scan lines in the cloud's
+/// order. It refers to what it is made of.
+struct ScanReturns {
+  const CloudView& cloud;
+  const ScanLines& lines;
+  const ScanTiming& timing;
+  double min_range;            ///< m
+  double max_range;            ///< m
+  double vertical_correction;  ///< degrees by which every point is turned up
+
+  [[nodiscard]] bool areAtLeast(std::size_t count) const;
+};
+
 /// \param[out] points overwritten; its memory is reused
-void collectPoints(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing, double min_range,
-                   double max_range, std::vector<ScanPoint>& points);
+void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Takes points evenly by space: the first one in each cube.
 class SpatialSampling {
@@ -33,20 +44,29 @@ public:
   /// \param side m, of the cubes
   /// \param[out] sample overwritten; its memory is reused
   void sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample);
+  /// Of a scan, whose other points need not be listed, nor their times be found.
+  void sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample);
 
   /// The side of which the points fill about \p cells cubes, m; 0 without points.
   [[nodiscard]] double sideFor(const std::vector<ScanPoint>& points, std::size_t cells);
 
 private:
-  [[nodiscard]] bool isFirst(const ScanPoint& point, float inverse_side);
+  /// Some cubes, by what their keys have in common, and a bit for each that was seen.
+  struct Block {
+    std::uint64_t key = 0;
+    std::uint64_t cubes = 0;
+  };
+
+  void addFirst(const struct ReturnBatch& batch, float inverse_side, std::vector<ScanPoint>& sample);
+  [[nodiscard]] bool isFirst(std::uint64_t cube);
   void forget();
   void grow();
   [[nodiscard]] std::size_t placeOf(std::uint64_t key) const;
 
-  std::vector<std::uint64_t> table_;
+  std::vector<Block> table_;
   unsigned shift_ = 0;  // leaves as many bits of a hash as number the table's slots
   std::size_t used_ = 0;
-  std::uint64_t last_ = 0;
+  std::size_t last_ = 0;  // block
 };
 
 }  // namespace pcl_floam

@@ -1,5 +1,5 @@
 // The correction of a sensor's vertical angles.
-#include "odometry/vertical_correction.h"
+#include "filters/vertical_correction.h"
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>

@@ -3,16 +3,15 @@
 #pragma once
 
 #include <pcl_floam/filters/features.h>
-#include <pcl_floam/filters/scan_points.h>
 
-#include <vector>
+#include <cstddef>
 
 namespace pcl_floam {
 
 /// Turns every feature by \p degrees about p x z, so that it rises (KITTI's HDL-64 needs about 0.205).
 void correctVerticalAngle(double degrees, FeatureSet& features);
 
-/// \copydoc correctVerticalAngle
-void correctVerticalAngle(double degrees, std::vector<ScanPoint>& points);
+/// The same for \p count points side by side.
+void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y, float* z);
 
 }  // namespace pcl_floam

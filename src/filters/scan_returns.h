@@ -1,0 +1,46 @@
+/// \file scan_returns.h
+/// The returns of a scan, some at a time.
+#pragma once
+
+#include <pcl_floam/filters/scan_points.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace pcl_floam {
+
+/// Returns of one scan line that follow each other (of any, without scan lines): enough to make loops over them worth
+/// while, and few enough to stay in the first cache.
+struct ReturnBatch {
+  static constexpr std::size_t kMost = 256;
+
+  std::size_t count = 0;
+  std::array<float, kMost> x, y, z;        ///< m, corrected
+  std::array<std::int32_t, kMost> index;   ///< in the cloud
+  std::array<std::uint32_t, kMost> laser;  ///< as \ref ScanPoint has it
+
+  [[nodiscard]] ScanPoint point(std::size_t n) const { return {x[n], y[n], z[n], 0.5F, laser[n], index[n]}; }
+};
+
+/// Reads the returns in the order in which \ref collectPoints lists them.
+class ReturnReader {
+public:
+  explicit ReturnReader(const ScanReturns& returns);
+
+  /// \return false if there are no more
+  bool next(ReturnBatch& batch);
+
+private:
+  void readLine(ReturnBatch& batch);
+  void readCloud(ReturnBatch& batch);
+  std::size_t take(std::size_t i, std::size_t n, ReturnBatch& batch) const;
+
+  const ScanReturns& returns_;
+  float nearest_;   // m^2
+  float farthest_;  // m^2
+  std::size_t line_ = 0;
+  std::size_t place_ = 0;  // in the lines' list, or in the cloud
+};
+
+}  // namespace pcl_floam

@@ -1,0 +1,236 @@
+// What a pyramid of voxels has at a place.
+#include "common/prefetch.h"
+#include "map/voxel_pyramid.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace pcl_floam {
+
+namespace {
+
+/// Which of a cell's eight children holds an offset from its centre.
+unsigned octantOf(const Eigen::Vector3f& offset)
+{
+  return (offset.x() >= 0.0F ? 1U : 0U) | (offset.y() >= 0.0F ? 2U : 0U) | (offset.z() >= 0.0F ? 4U : 0U);
+}
+
+/// From a cell's centre to that of its child, in halves of the child's side.
+Eigen::Vector3f towards(unsigned octant)
+{
+  return {(octant & 1U) != 0U ? 1.0F : -1.0F, (octant & 2U) != 0U ? 1.0F : -1.0F, (octant & 4U) != 0U ? 1.0F : -1.0F};
+}
+
+using Squared = std::array<float, VoxelCells::Leaf::kLanes>;
+
+/// Of a group's points.
+inline Squared squaredDistances(const VoxelCells::Leaf::Group& group, const Eigen::Vector3f& offset)
+{
+  Squared squared;
+  for (std::size_t lane = 0; lane < squared.size(); ++lane) {
+    const float x = group.x[lane] - offset.x();
+    const float y = group.y[lane] - offset.y();
+    const float z = group.z[lane] - offset.z();
+    squared[lane] = x * x + y * y + z * z;
+  }
+  return squared;
+}
+
+inline float leastOf(const Squared& s)
+{
+  return std::min(std::min(s[0], s[1]), std::min(s[2], s[3]));
+}
+
+}  // namespace
+
+/// From that of the block.
+Eigen::Vector3f VoxelPyramid::centerOf(const Place& place, int level) const
+{
+  constexpr int kAcross = 1 << (kLevels - 1);  // finest cells
+  const auto within = [&](std::int32_t v) { return ((v & (kAcross - 1)) >> level) + 0.5; };
+  const Eigen::Vector3d cells(within(place.key.x), within(place.key.y), within(place.key.z));
+  return (sideOf(level) * cells - Eigen::Vector3d::Constant(0.5 * sideOf(kLevels - 1))).cast<float>();
+}
+
+/// A thread that finds a fit in the making works it out for itself rather than wait.
+/// \param own room for it then
+VoxelPyramid::Fit VoxelPyramid::fitOf(std::uint32_t number, CellFit& own) const
+{
+  const VoxelCells::Cell& cell = cells_[number];
+  std::uint8_t state = cell.state.load(std::memory_order_acquire);
+  if (state >= VoxelCells::kKnown) {
+    return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, cells_.content(number).axes};
+  }
+  const VoxelCells::Content& content = cells_.content(number);
+  own = pcl_floam::fitOf(content.sums, shapes_);
+  if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
+    cell.shape = own.shape;
+    content.axes = own.axes;
+    cell.state.store(static_cast<std::uint8_t>(VoxelCells::kKnown + static_cast<std::uint8_t>(own.kind)),
+                     std::memory_order_release);
+  }
+  return {own.kind, own.shape, own.axes};
+}
+
+Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
+{
+  Surface surface;
+  find(&point, &laser, 1, &surface);
+  return surface;
+}
+
+/// A line of edge features is seen by three lasers; that is support enough.
+void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
+{
+  CellFit own;
+  surface.kind = SurfaceKind::unknown;
+  for (; found.cell != 0; found.cell = cells_[found.cell].parent, ++found.level) {
+    const VoxelCells::Cell& cell = cells_[found.cell];
+    if (shapes_ != SurfaceShapes::lines && !cell.support.hasTwoBesides(laser, keyframe_)) {
+      continue;
+    }
+    const Fit fit = fitOf(found.cell, own);
+    if (fit.kind != SurfaceKind::unknown) {
+      surfaceIn(found, place, fit, surface);
+      return;
+    }
+  }
+}
+
+void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const
+{
+  const CellShape& shape = fit.shape;
+  const Eigen::Vector3d block = centerOfBlock(place.block());
+  surface.kind = fit.kind;
+  surface.count = cells_[found.cell].count;
+  surface.size = sideOf(found.level);
+  if (fit.kind == SurfaceKind::point) {
+    Nearest nearest;
+    findNearest(found, centerOf(place, found.level), place.offset.cast<float>(), nearest);
+    surface.center = block + nearest.place.cast<double>();
+    surface.direction.setZero();
+    surface.thickness = static_cast<double>(squared_spacing_);
+    surface.extent = 0.0;
+    surface.felt = feltIn(found, fit.axes);
+    return;
+  }
+  surface.center = block + Eigen::Vector3f(shape.mean.data()).cast<double>();
+  surface.direction = Eigen::Vector3f(shape.direction.data()).cast<double>();
+  surface.thickness = static_cast<double>(shape.thickness);
+  surface.extent = static_cast<double>(shape.extent);
+}
+
+/// Which displacements are felt among the points of a cell.
+Eigen::Matrix3d VoxelPyramid::feltIn(Found found, const std::array<float, 9>& axes_of_cell) const
+{
+  constexpr std::uint32_t kBeingMade = std::numeric_limits<std::uint32_t>::max();
+  const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix3f>(axes_of_cell.data()).cast<double>();
+  const VoxelCells::Content& content = cells_.content(found.cell);
+  const std::uint32_t parent = cells_[found.cell].parent;
+  const std::uint32_t beside = parent == 0 ? 1 : cells_.content(parent).sums.count + 1;
+  std::uint32_t known = content.felt_beside.load(std::memory_order_acquire);
+  if (known == beside) {
+    return axes * Eigen::Vector3d(content.felt.data()).asDiagonal() * axes.transpose();
+  }
+  const Eigen::Vector3d felt = feltAlong(axes, found);
+  if (known != kBeingMade && content.felt_beside.compare_exchange_strong(known, kBeingMade)) {
+    Eigen::Map<Eigen::Vector3d>(content.felt.data()) = felt;
+    content.felt_beside.store(beside, std::memory_order_release);
+  }
+  return axes * felt.asDiagonal() * axes.transpose();
+}
+
+/// What fills a cell evenly, or goes on in the next greater one as in this, tells nothing of the way along it.
+Eigen::Vector3d VoxelPyramid::feltAlong(const Eigen::Matrix3d& axes, Found found) const
+{
+  constexpr double kChance = 1.25;  // as few points vary by chance
+  const auto along = [&](std::uint32_t cell, int level) {
+    return Eigen::Vector3d((axes.transpose() * cells_.content(cell).sums.filled(sideOf(level)) * axes).diagonal());
+  };
+  Eigen::Vector3d filled = along(found.cell, found.level);
+  const std::uint32_t parent = cells_[found.cell].parent;
+  if (parent != 0) {
+    filled = filled.cwiseMax(along(parent, found.level + 1));
+  }
+  return (1.0 - kChance * filled.array()).max(0.0);
+}
+
+/// Nearest cells first; those that lie farther off than what was found are left out.
+void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const Eigen::Vector3f& offset,
+                               Nearest& nearest) const
+{
+  if (found.level == 0) {
+    findNearest(cells_.leaf(found.cell), offset, nearest);
+    return;
+  }
+  const std::array<std::uint32_t, 8>& children = cells_.content(found.cell).child;
+  for (const std::uint32_t child : children) {
+    prefetch(&cells_.content(child), sizeof(children));
+  }
+  const float half = 0.25F * static_cast<float>(sideOf(found.level));  // of a child
+  const Eigen::Array3f from_center = (offset - center).array();
+  const Eigen::Array3f below = ((from_center + half).abs() - half).max(0.0F).square();
+  const Eigen::Array3f above = ((from_center - half).abs() - half).max(0.0F).square();
+  const unsigned first = octantOf(Eigen::Vector3f(offset - center));
+  for (unsigned i = 0; i < 8; ++i) {
+    const unsigned child = first ^ i;
+    const float outside = ((child & 1U) != 0U ? above : below).x() + ((child & 2U) != 0U ? above : below).y() +
+                          ((child & 4U) != 0U ? above : below).z();
+    if (children[child] != 0 && outside < nearest.squared) {
+      findNearest({children[child], found.level - 1}, center + half * towards(child), offset, nearest);
+    }
+  }
+}
+
+/// Whether a point is nearer to one of a leaf than those of a full one are to each other.
+bool VoxelPyramid::isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const
+{
+  for (std::size_t g = 0; g < leaf.used(); ++g) {
+    if (leastOf(squaredDistances(leaf.groups[g], offset)) < squared_spacing_) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
+{
+  for (std::size_t g = 0; g < leaf.used(); ++g) {
+    const Squared squared = squaredDistances(leaf.groups[g], offset);
+    const float least = leastOf(squared);
+    if (least < nearest.squared) {
+      const auto lane = static_cast<std::size_t>(std::find(squared.begin(), squared.end(), least) - squared.begin());
+      nearest = {leaf.point(g * Leaf::kLanes + lane), least};
+    }
+  }
+}
+
+/// Some at a time, each step of all before the next step: the memory of one comes while another is looked at.
+void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
+                        Surface* surfaces) const
+{
+  std::array<Place, kAtOnce> place;
+  std::array<bool, kAtOnce> is_there{};
+  std::array<Found, kAtOnce> found;
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    const std::size_t n = std::min(kAtOnce, count - begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      is_there[i] = findPlace(places[begin + i], place[i]);
+      if (is_there[i]) {
+        cells_.expect(place[i].key);
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      found[i] = is_there[i] ? cells_.finestAt(place[i].key) : Found();
+      if (found[i].cell != 0) {
+        prefetch(&cells_[found[i].cell], sizeof(VoxelCells::Cell));
+        prefetch(&cells_.content(found[i].cell), sizeof(std::uint64_t));
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      surfaceAt(place[i], found[i], lasers[begin + i], surfaces[begin + i]);
+    }
+  }
+}
+
+}  // namespace pcl_floam
