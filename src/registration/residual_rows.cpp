@@ -51,6 +51,21 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
   ++size_;
 }
 
+/// M = sum d u u^T (LDL^T).
+void ResidualRows::add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm,
+                       double weight)
+{
+  Eigen::Matrix3d rest = m;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double d = rest(i, i);
+    if (d > 0.0) {
+      const Eigen::Vector3d u = rest.col(i) / d;
+      rest -= d * u * u.transpose();
+      add(u, arm, u.dot(difference), d * weight, 0.0);
+    }
+  }
+}
+
 void ResidualRows::addTo(NormalEquations& equations)
 {
   while (size_ % kLanes != 0) {

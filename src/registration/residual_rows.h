@@ -21,6 +21,10 @@ public:
   void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
            double since_middle);
 
+  /// The three residuals that a difference makes whose directions count differently: its square is d^T M d.
+  /// \param m symmetric, positive definite
+  void add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm, double weight);
+
   /// H, b and what couples pose and velocity in them (Eq. 10), bit-identical for every processor.
   void addTo(NormalEquations& equations);
 

@@ -14,7 +14,6 @@ namespace pcl_floam {
 /// always to the same side: the floor has things standing on it, none hang below. 04_choices.sh, "planes all alike".
 /// \param weights W of Eq. 9, for each of the planes
 /// \param scatter \ref RegistrationParameters::plane_scatter; 0 leaves W
-void weighByScatter(const std::vector<double>& weights, double scatter,
-                    std::vector<Correspondence<PlaneFactor>>& planes);
+void weighByScatter(const std::vector<double>& weights, double scatter, std::vector<Correspondence>& planes);
 
 }  // namespace pcl_floam
