@@ -18,7 +18,9 @@ class PointMoments {
 public:
   void add(const Eigen::Vector3d& p)
   {
-    sum_ += p;
+    x_ += p.x();
+    y_ += p.y();
+    z_ += p.z();
     xx_ += p.x() * p.x();
     xy_ += p.x() * p.y();
     xz_ += p.x() * p.z();
@@ -29,7 +31,7 @@ public:
   }
 
   [[nodiscard]] int count() const { return count_; }
-  [[nodiscard]] Eigen::Vector3d mean() const { return sum_ / static_cast<double>(count_); }
+  [[nodiscard]] Eigen::Vector3d mean() const { return sum() / static_cast<double>(count_); }
 
   [[nodiscard]] PrincipalAxes axes() const
   {
@@ -37,12 +39,14 @@ public:
     Eigen::Matrix3d squares;
     squares << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(squares / count - sum_ * sum_.transpose() / (count * count));
+    solver.computeDirect(squares / count - sum() * sum().transpose() / (count * count));
     return {solver.eigenvalues(), solver.eigenvectors()};
   }
 
 private:
-  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  [[nodiscard]] Eigen::Vector3d sum() const { return {x_, y_, z_}; }
+
+  double x_ = 0.0, y_ = 0.0, z_ = 0.0;
   double xx_ = 0.0, xy_ = 0.0, xz_ = 0.0, yy_ = 0.0, yz_ = 0.0, zz_ = 0.0;
   int count_ = 0;
 };

@@ -15,6 +15,19 @@ struct ThreeSums {
   double of[3];
 };
 
+/// Of a b w. \param n a multiple of the lanes
+PCL_FLOAM_MULTI_VERSION
+double weightedProduct(const double* a, const double* b, const double* w, std::size_t n)
+{
+  double s[kLanes] = {};
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      s[lane] += w[i + lane] * (a[i + lane] * b[i + lane]);
+    }
+  }
+  return (s[0] + s[1]) + (s[2] + s[3]);
+}
+
 /// Of a b w for each of three weights. \param n a multiple of the lanes
 PCL_FLOAM_MULTI_VERSION
 ThreeSums weightedProducts(const double* a, const double* b, const double* w0, const double* w1, const double* w2,
@@ -48,6 +61,7 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
   weight_[0][size_] = weight;
   weight_[1][size_] = since_middle * weight;
   weight_[2][size_] = since_middle * since_middle * weight;
+  is_timed_ = is_timed_ || since_middle != 0.0;
   ++size_;
 }
 
@@ -72,7 +86,9 @@ void ResidualRows::addTo(NormalEquations& equations)
     add(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, 0.0, 0.0);
   }
   const auto sumsOf = [this](const Column& a, const Column& b) {
-    return weightedProducts(a.data(), b.data(), weight_[0].data(), weight_[1].data(), weight_[2].data(), size_);
+    const double* w = weight_[0].data();
+    return is_timed_ ? weightedProducts(a.data(), b.data(), w, weight_[1].data(), weight_[2].data(), size_)
+                     : ThreeSums{{weightedProduct(a.data(), b.data(), w, size_), 0.0, 0.0}};
   };
   for (std::size_t i = 0; i < 6; ++i) {
     const auto row = static_cast<Eigen::Index>(i);

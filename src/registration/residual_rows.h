@@ -15,8 +15,6 @@ class ResidualRows {
 public:
   static constexpr std::size_t kRoom = 192;
 
-  void clear() { size_ = 0; }
-
   /// \param arm from the local origin to the point
   void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
            double since_middle);
@@ -32,6 +30,7 @@ private:
   using Column = std::array<double, kRoom>;
 
   std::size_t size_ = 0;
+  bool is_timed_ = false;  ///< else all were measured at the pose's instant
   std::array<Column, 6> jacobian_;
   Column residual_;
   std::array<Column, 3> weight_;  ///< times the time since mid-sweep to the power of 0, 1, 2
