@@ -1,7 +1,7 @@
 #include "registration/correspondences.h"
 
 #include "registration/line_plane_fit.h"
-#include "registration/scatter_weights.h"
+#include "registration/weights.h"
 
 #include <algorithm>
 #include <array>

@@ -50,8 +50,8 @@ private:
   /// What a match says: the difference of its points, and how much each direction of it counts.
   struct Residual {
     Eigen::Vector3f difference;
-    float xx, xy, xz, yy, yz, zz;  ///< M, symmetric
-    float squared;                 ///< difference^T M difference, m^2; negative without a match
+    Eigen::Matrix3f m;
+    float squared;  ///< difference^T M difference, m^2; negative without a match
   };
 
   /// What the last search for a source point's nearest target point came to. While the point moves little, it tells the

@@ -2,6 +2,8 @@
 #include "registration/level_alignment.h"
 #include "registration/robust_kernel.h"
 
+#include <Eigen/LU>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -28,27 +30,9 @@ LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i
     return Eigen::Vector3d((level.tree.points()[point] + level.shapes[point].to_surface).cast<double>());
   };
   const Eigen::Vector3d difference = pose * onSurface(source_, i) - onSurface(target_, j);
-  // M = 2 along_ c^-1: one across two parallel planes.
-  const double xx = c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
-  const double xy = c(0, 2) * c(1, 2) - c(0, 1) * c(2, 2);
-  const double xz = c(0, 1) * c(1, 2) - c(0, 2) * c(1, 1);
-  const double scale = 2.0 * along_ / (c(0, 0) * xx + c(0, 1) * xy + c(0, 2) * xz);
-  Eigen::Matrix3d m;
-  m(0, 0) = scale * xx;
-  m(0, 1) = m(1, 0) = scale * xy;
-  m(0, 2) = m(2, 0) = scale * xz;
-  m(1, 1) = scale * (c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2));
-  m(1, 2) = m(2, 1) = scale * (c(0, 1) * c(0, 2) - c(0, 0) * c(1, 2));
-  m(2, 2) = scale * (c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1));
-  const auto f = [](double value) { return static_cast<float>(value); };
-  return {difference.cast<float>(),
-          f(m(0, 0)),
-          f(m(0, 1)),
-          f(m(0, 2)),
-          f(m(1, 1)),
-          f(m(1, 2)),
-          f(m(2, 2)),
-          f(std::max(0.0, difference.dot(m * difference)))};
+  const Eigen::Matrix3d m = 2.0 * along_ * c.inverse();  // one across two parallel planes
+  const auto squared = static_cast<float>(std::max(0.0, difference.dot(m * difference)));
+  return {difference.cast<float>(), m.cast<float>(), squared};
 }
 
 void LevelAlignment::weigh(const SE3& pose)
@@ -79,11 +63,9 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, ResidualRows& ro
   const auto squared = static_cast<double>(r.squared);
   const RobustKernel kernel = robust_ ? run_.kernel : RobustKernel::none;
   const double robust = robustWeight(kernel, squared, scale_);
-  Eigen::Matrix3f m;
-  m << r.xx, r.xy, r.xz, r.xy, r.yy, r.yz, r.xz, r.yz, r.zz;
   const Eigen::Vector3d arm = pose.rotation * source_.tree.points()[i].cast<double>();
-  rows.add(m.cast<double>(), r.difference.cast<double>(), arm, robust);
-  const double weight = robust * static_cast<double>(m.trace());
+  rows.add(r.m.cast<double>(), r.difference.cast<double>(), arm, robust);
+  const double weight = robust * static_cast<double>(r.m.trace());
   sums.cost += 0.5 * robustCost(kernel, squared, scale_);
   sums.weighted_squares += robust * squared;
   sums.weight += weight;
