@@ -1,11 +1,7 @@
 #include <pcl_floam/filters/feature_extractor.h>
 
-#include "common/median.h"
-#include "common/multi_version.h"
-#include "common/parameter_check.h"
 #include "filters/edge_position.h"
-#include "filters/line_neighborhood.h"
-#include "filters/line_points.h"
+#include "filters/line_rating.h"
 #include "filters/point_times.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
@@ -23,35 +19,10 @@ namespace {
 /// breadth, as at a door, about a third does.
 constexpr float kAcross = 0.3F;
 
-constexpr float kNeverFlat = std::numeric_limits<float>::max();
-
 struct EdgeCandidate {
   float sharpness;
   int place;  ///< in the line
 };
-
-/// Scratch memory for one scan line after another.
-struct LineScratch {
-  LinePoints points;
-  std::vector<float> sigma;
-  std::vector<std::int32_t> unfit;
-  std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
-  std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
-  std::vector<EdgeCandidate> candidates;
-  std::vector<float> sample;  ///< of sigma, or spacings
-};
-
-/// Sorts a line's points into those sharp enough for edges and those smooth enough for planes.
-PCL_FLOAM_MULTI_VERSION
-void rate(std::size_t count, const float* sigma, const std::int32_t* unfit, float edge_threshold, float plane_threshold,
-          float* sharpness, float* flatness)
-{
-  for (std::size_t n = 0; n < count; ++n) {
-    const bool fit = unfit[n] == 0;
-    sharpness[n] = fit && sigma[n] > edge_threshold ? sigma[n] : 0.0F;
-    flatness[n] = fit && sigma[n] < plane_threshold ? sigma[n] : kNeverFlat;
-  }
-}
 
 /// The first place of the least of some numbers that are not negative.
 int placeOfLeast(const std::vector<float>& numbers, int first, int last)
@@ -70,41 +41,26 @@ int placeOfLeast(const std::vector<float>& numbers, int first, int last)
 class LineSelector {
 public:
   LineSelector(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable, LineScratch& scratch,
+               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable, LineRating& rating,
                FeatureSet& features)
       : cloud_(cloud),
         lines_(lines),
         timing_(timing),
         parameters_(parameters),
         selectable_(selectable),
-        line_(scratch),
+        line_(rating),
         features_(features)
   {
   }
 
   void select(std::size_t m)
   {
-    line_.points.gather(cloud_, lines_, m);
-    const LineNeighborhood neighborhood = neighborhoodIn(line_.points, parameters_.neighbors_each_side, line_.sample);
-    neighbors_ = neighborhood.each_side;
-    if (line_.points.size() <= 2 * neighbors_) {
+    first_index_ = static_cast<std::size_t>(lines_.begin[m]);
+    if (!line_.rate(cloud_, lines_, m, parameters_, selectable_)) {
       return;
     }
     line_number_ = static_cast<std::int32_t>(m);
-    first_index_ = static_cast<std::size_t>(lines_.begin[m]);
-    if (neighborhood.is_sparse && parameters_.smoothness == SmoothnessKind::vector_sum) {
-      computeSmoothnessAcross(line_.points, neighbors_, line_.sigma);
-    } else {
-      computeSmoothness(line_.points, neighbors_, parameters_.smoothness, line_.sigma);
-    }
-    markUnfit(line_.points, parameters_, neighborhood, line_.unfit);
-    threshold_ = edgeThreshold();  // by all points of the line, asked for or not
-    markNotAsked();
-    line_.sharpness.resize(line_.sigma.size());
-    line_.flatness.resize(line_.sigma.size());
-    rate(line_.sigma.size(), line_.sigma.data(), line_.unfit.data(), threshold_, parameters_.plane_threshold,
-         line_.sharpness.data(), line_.flatness.data());
-
+    neighbors_ = line_.each_side;
     const int begin = neighbors_;
     const int length = line_.points.size() - 2 * begin;
     for (int sector = 0; sector < parameters_.sectors; ++sector) {
@@ -116,33 +72,6 @@ public:
   }
 
 private:
-  void markNotAsked()
-  {
-    for (std::size_t n = 0; !selectable_.empty() && n < line_.unfit.size(); ++n) {
-      if (selectable_[static_cast<std::size_t>(lines_.index[first_index_ + n])] == 0) {
-        line_.unfit[n] = 1;
-      }
-    }
-  }
-
-  /// Above the noise of this line.
-  [[nodiscard]] float edgeThreshold()
-  {
-    if (parameters_.smoothness != SmoothnessKind::vector_sum) {
-      return parameters_.edge_threshold;
-    }
-    constexpr std::size_t kSample = 128;  // enough for a median, and cheap
-    const auto ends = static_cast<std::size_t>(neighbors_);
-    const std::size_t step = std::max<std::size_t>(1, line_.sigma.size() / kSample);
-    line_.sample.clear();
-    for (std::size_t n = ends; n + ends < line_.sigma.size(); n += step) {
-      if (line_.unfit[n] == 0) {
-        line_.sample.push_back(line_.sigma[n]);
-      }
-    }
-    return std::max(parameters_.edge_threshold, parameters_.edge_noise_ratio * medianOf(line_.sample));
-  }
-
   /// The points of highest smoothness, at least a neighbourhood apart. Most candidates are never looked at closely.
   void selectEdges(int first, int last)
   {
@@ -150,7 +79,7 @@ private:
     const auto isLess = [](const EdgeCandidate& a, const EdgeCandidate& b) {
       return a.sharpness != b.sharpness ? a.sharpness < b.sharpness : a.place > b.place;
     };
-    std::vector<EdgeCandidate>& heap = line_.candidates;
+    std::vector<EdgeCandidate>& heap = candidates_;
     std::make_heap(heap.begin(), heap.end(), isLess);
     for (int taken = 0; taken < parameters_.edges_per_sector && !heap.empty(); heap.pop_back()) {
       std::pop_heap(heap.begin(), heap.end(), isLess);
@@ -165,7 +94,7 @@ private:
   void findEdgeCandidates(int first, int last)
   {
     constexpr int kStretch = 16;  // most have none
-    line_.candidates.clear();
+    candidates_.clear();
     for (int begin = first; begin < last; begin += kStretch) {
       const int end = std::min(last, begin + kStretch);
       float sum = 0.0F;
@@ -174,7 +103,7 @@ private:
       }
       for (int n = begin; n < end && sum > 0.0F; ++n) {
         if (sharpness(n) > 0.0F) {
-          line_.candidates.push_back({sharpness(n), n});
+          candidates_.push_back({sharpness(n), n});
         }
       }
     }
@@ -195,7 +124,7 @@ private:
     // Where returns are missing, a straight line's neighbours are nearer on one side: its sum is long, but along it.
     const float across = meanDifferenceAcross(line_.points, n, neighbors_);
     return isBesideDepthStep(line_.points, n) ||
-           across > kAcross * std::max(threshold_, parameters_.edge_bend * distance);
+           across > kAcross * std::max(line_.edge_threshold, parameters_.edge_bend * distance);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.
@@ -217,7 +146,7 @@ private:
 
   void takeEdge(int sharpest)
   {
-    const LineEdge edge = locateEdge(line_.points, sharpest, threshold_);
+    const LineEdge edge = locateEdge(line_.points, sharpest, line_.edge_threshold);
     Feature feature = makeFeature(sharpest);
     feature.x = edge.position.x();
     feature.y = edge.position.y();
@@ -265,35 +194,15 @@ private:
   const ScanTiming& timing_;
   const FeatureParameters& parameters_;
   const std::vector<std::uint8_t>& selectable_;
-  LineScratch& line_;
+  LineRating& line_;
   FeatureSet& features_;
   std::int32_t line_number_ = 0;
   std::size_t first_index_ = 0;
-  int neighbors_ = 0;       ///< on each side, in this line
-  float threshold_ = 0.0F;  ///< of the edges' smoothness in this line
+  int neighbors_ = 0;  ///< on each side, in this line
+  std::vector<EdgeCandidate> candidates_;
 };
 
 }  // namespace
-
-const char* toString(SmoothnessKind kind)
-{
-  return kind == SmoothnessKind::vector_sum ? "vector-sum" : "mean-of-norms";
-}
-
-void validate(const FeatureParameters& p)
-{
-  const ParameterCheck check("feature extraction");
-  check.range("neighbors_each_side", p.neighbors_each_side, 2, 10);
-  check.range("sectors", p.sectors, 1, 64);
-  check.range("edges_per_sector", p.edges_per_sector, 0, 100);
-  check.range("planes_per_sector", p.planes_per_sector, 0, 1000);
-  check.atLeast("min_range", p.min_range, 0.0);
-  check.above("max_range", p.max_range, p.min_range);
-  check.atLeast("edge_threshold", p.edge_threshold, 0.0);
-  check.atLeast("edge_noise_ratio", p.edge_noise_ratio, 0.0);
-  check.range("edge_bend", p.edge_bend, 0.0, 1.0);
-  check.above("plane_threshold", p.plane_threshold, 0.0);
-}
 
 void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
                      const FeatureParameters& parameters, FeatureSet& features,
@@ -312,8 +221,8 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 1)
   for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
     const auto part = static_cast<std::size_t>(p);
-    LineScratch scratch;
-    LineSelector selector(cloud, lines, timing, parameters, selectable, scratch, found[part]);
+    LineRating rating;
+    LineSelector selector(cloud, lines, timing, parameters, selectable, rating, found[part]);
     for (std::size_t m = lines.lines() * part / parts; m < lines.lines() * (part + 1) / parts; ++m) {
       selector.select(m);
     }

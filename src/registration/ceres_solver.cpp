@@ -60,10 +60,9 @@ Eigen::Matrix<double, 3, 6> motionDerivative(const Eigen::Vector3d& rotated, con
 
 /// A factor's residual as a function of a perturbation of the pose (translation, rotation vector), of which the point
 /// follows its share: q' = R(d) q + t(d), d = share * pose.
-template <typename Factor>
-class PerturbationCost : public ceres::SizedCostFunction<Factor::kResiduals, 6> {
+class PerturbationCost : public ceres::SizedCostFunction<3, 6> {
 public:
-  PerturbationCost(const Correspondence<Factor>& correspondence, double share, const DegreesOfFreedom& locked)
+  PerturbationCost(const Correspondence& correspondence, double share, const DegreesOfFreedom& locked)
       : factor_(correspondence.factor), point_(correspondence.point), share_(share), free_(Vector6::Ones())
   {
     for (std::size_t i = 0; i < locked.size(); ++i) {
@@ -76,14 +75,10 @@ public:
     const Vector6 perturbation = share_ * Eigen::Map<const Vector6>(parameters[0]);
     const Eigen::Vector3d phi = perturbation.tail<3>();
     const Eigen::Vector3d rotated = expSO3(phi) * point_;
-    Eigen::Map<Eigen::Matrix<double, Factor::kResiduals, 1>> residual(residuals);
-    residual = factor_.residual(rotated + perturbation.head<3>());
+    Eigen::Map<Eigen::Vector3d>{residuals} = factor_.residual(rotated + perturbation.head<3>());
     if (jacobians != nullptr && jacobians[0] != nullptr) {
-      const Eigen::Matrix<double, Factor::kResiduals, 6> jacobian =
+      Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>>{jacobians[0]} =
           share_ * factor_.derivative() * motionDerivative(rotated, phi) * free_.asDiagonal();
-      for (int row = 0; row < Factor::kResiduals; ++row) {
-        Eigen::Map<Eigen::Matrix<double, 1, 6>>(jacobians[0] + 6L * row) = jacobian.row(row);
-      }
     }
     return true;
   }
@@ -95,15 +90,14 @@ private:
   Vector6 free_;           ///< 0 for a locked degree of freedom, else 1
 };
 
-template <typename Factor>
-void addResiduals(const std::vector<Correspondence<Factor>>& correspondences, const SweepModel& model,
+void addResiduals(const std::vector<Correspondence>& correspondences, const SweepModel& model,
                   const DegreesOfFreedom& locked, ceres::LossFunction* loss, Vector6& perturbation,
                   ceres::Problem& ceres_problem)
 {
-  for (const auto& c : correspondences) {
+  for (const Correspondence& c : correspondences) {
     if (c.weight > 0.0) {
       const double share = model.follows_pose ? 1.0 + model.sweep_per_motion * c.since_reference : 1.0;
-      ceres_problem.AddResidualBlock(new PerturbationCost<Factor>(c, share, locked),
+      ceres_problem.AddResidualBlock(new PerturbationCost(c, share, locked),
                                      new ceres::ScaledLoss(loss, c.weight, ceres::DO_NOT_TAKE_OWNERSHIP),
                                      perturbation.data());
     }

@@ -2,8 +2,8 @@
 /// The estimate of one registration of clouds, which goes from level to level.
 #pragma once
 
-#include "registration/alignment_analysis.h"
 #include "registration/cloud_pyramid.h"
+#include "registration/information_analysis.h"
 #include "registration/level_alignment.h"
 
 #include <pcl_floam/common/se3.h>
@@ -31,13 +31,16 @@ public:
   void move(const Vector6& perturbation);
 
   /// Keeps steps from perturbations like these, one a column.
-  void hold(const FreeMotions& perturbations) { held_ = perturbations; }
+  void hold(const Motions& perturbations) { held_ = perturbations; }
   [[nodiscard]] SE3 toFrames(const SE3& pose) const { return target_T_origin_ * pose * source_T_origin_.inverse(); }
 
   // Of the last iteration.
-  [[nodiscard]] const AlignmentSums& sums() const { return sums_; }
+  [[nodiscard]] const NormalEquations& sums() const { return sums_; }
   [[nodiscard]] int iterations() const { return iterations_; }  ///< of the last align()
-  [[nodiscard]] AlignmentAnalysis analysis() const { return {sums_, extent_, freeMotions(run_.locked, arm()), held_}; }
+  [[nodiscard]] InformationAnalysis analysis() const
+  {
+    return InformationAnalysis(sums_, 0.0, freeMotions(run_.locked, arm()), held_);
+  }
 
   /// From the source's frame's origin to its centroid, in the target's axes.
   [[nodiscard]] Eigen::Vector3d arm() const { return pose_.rotation * source_T_origin_.translation; }
@@ -48,11 +51,11 @@ private:
 
   const CloudRegistrationRun& run_;
   double extent_;
-  FreeMotions held_ = FreeMotions(6, 0);
+  Motions held_ = Motions(6, 0);
   SE3 source_T_origin_;
   SE3 target_T_origin_;
   SE3 pose_;
-  AlignmentSums sums_;
+  NormalEquations sums_;
   int iterations_ = 0;
 };
 

@@ -6,6 +6,7 @@
 #include "registration/weak_directions.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,14 @@ constexpr double kAlongOfFew = 0.05;
 
 /// Whoever asks for fewer iterations than this wants to see them one by one.
 constexpr int kFewestForCoarse = 4;
+
+/// A perturbation (t, w) about a point is (t + arm x w, w) about one that lies \p arm nearer.
+Matrix6 leverOf(const Eigen::Vector3d& arm)
+{
+  Matrix6 lever = Matrix6::Identity();
+  lever.topRightCorner<3, 3>() = skew(arm);
+  return lever;
+}
 
 class Registration {
 public:
@@ -84,11 +93,11 @@ private:
   /// \param shares see WeakDirections
   RegistrationReport finish(const std::vector<double>& shares)
   {
-    const AlignmentSums& sums = alignment_.sums();
-    report_.edge_correspondences = sums.lines;
+    const NormalEquations& sums = alignment_.sums();
+    report_.edge_correspondences = sums.edges;
     report_.plane_correspondences = sums.planes;
     report_.point_correspondences = sums.points;
-    report_.edge_inliers = sums.line_inliers;
+    report_.edge_inliers = sums.edge_inliers;
     report_.plane_inliers = sums.plane_inliers;
     const SE3 result = alignment_.toFrames(alignment_.pose());
     if (!result.isFinite()) {
@@ -98,7 +107,14 @@ private:
       return report_;
     }
     report_.target_T_source = result;
-    alignment_.analysis().describe(alignment_.arm(), kWeak * along(), shares, report_);
+    report_.cost = sums.cost;
+    report_.residual_rms = std::sqrt(sums.residualVariance());
+    const InformationAnalysis analysis = alignment_.analysis();
+    report_.weak_directions = analysis.weakDirections(kWeak * along() * analysis.largest(), shares);
+    const Matrix6 to_centroid = leverOf(-alignment_.arm());
+    report_.information = to_centroid.transpose() * sums.information * to_centroid;
+    const Matrix6 to_origin = leverOf(alignment_.arm());
+    report_.covariance = to_origin * analysis.covariance(sums.residualVariance(), shares) * to_origin.transpose();
     for (int i = 0; i < 6; ++i) {
       if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
         report_.covariance.row(i).setZero();

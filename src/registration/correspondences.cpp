@@ -1,7 +1,7 @@
 #include "registration/correspondences.h"
 
 #include "registration/line_plane_fit.h"
-#include "registration/scatter_weights.h"
+#include "registration/weights.h"
 
 #include <algorithm>
 #include <array>
@@ -12,35 +12,16 @@ namespace pcl_floam {
 
 namespace {
 
-EdgeFactor makeFactor(const LineFit& line, const Eigen::Vector3d& query)
-{
-  return {query + line.center, line.direction};
-}
-
-PlaneFactor makeFactor(const PlaneFit& plane, const Eigen::Vector3d& query)
-{
-  return {query + plane.center, plane.normal};
-}
-
-void noteNoise(const LineFit& /*line*/, Correspondence<EdgeFactor>& /*correspondence*/) {}
-
-void noteNoise(const PlaneFit& plane, Correspondence<PlaneFactor>& correspondence)
-{
-  correspondence.variance = plane.variance;
-  correspondence.tilt = plane.tilt;
-}
-
 /// A point that has moved by less than this part of the search radius keeps what it was linked to.
 constexpr double kNegligible = 0.02;
 
 /// Features of one kind, and how the map holds them.
-template <typename Shape>
 struct FeatureKindProblem {
   const std::vector<Feature>& features;
   const std::vector<double>& weights;
   const NeighborSearch& search;
   int neighbors;
-  std::optional<Shape> (*fit)(const Neighbors&, const RegistrationParameters&);
+  std::optional<Factor> (*fit)(const Neighbors&, const RegistrationParameters&);
 };
 
 /// The features whose neighbours are searched at one time.
@@ -56,20 +37,19 @@ public:
   }
 
   /// Links the features asked for to what is found around them.
-  template <typename Factor, typename Shape>
-  void link(const FeatureKindProblem<Shape>& kind, const RegistrationParameters& parameters, double search_radius,
-            std::vector<Correspondence<Factor>>& correspondences)
+  void link(const FeatureKindProblem& kind, const RegistrationParameters& parameters, double search_radius,
+            std::vector<Correspondence>& correspondences)
   {
     kind.search.nearestOfEach(query_.data(), count_, kind.neighbors, search_radius, found_.data());
     for (std::size_t n = 0; n < count_; ++n) {
-      Correspondence<Factor>& correspondence = correspondences[feature_[n]];
+      Correspondence& correspondence = correspondences[feature_[n]];
       correspondence.weight = 0.0;
       correspondence.searched_at = correspondence.point;
-      const auto geometry = found_[n].count < kind.neighbors ? std::optional<Shape>() : kind.fit(found_[n], parameters);
-      if (geometry) {
-        correspondence.factor = makeFactor(*geometry, correspondence.point);
+      const auto fit = found_[n].count < kind.neighbors ? std::nullopt : kind.fit(found_[n], parameters);
+      if (fit) {
+        correspondence.factor = *fit;
+        correspondence.factor.center += correspondence.point;
         correspondence.weight = kind.weights[feature_[n]];
-        noteNoise(*geometry, correspondence);
       }
     }
   }
@@ -83,10 +63,9 @@ private:
   std::array<Neighbors, kMost> found_;
 };
 
-template <typename Factor, typename Shape>
-void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem<Shape>& kind,
+void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem& kind,
                    const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
-                   std::vector<Correspondence<Factor>>& correspondences)
+                   std::vector<Correspondence>& correspondences)
 {
   correspondences.resize(kind.features.size());
   const double negligible = kNegligible * search_radius;
@@ -102,7 +81,7 @@ void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem<
       batch.begin();
       for (std::size_t n = first; n < std::min(first + Batch::kMost, looked_at); ++n) {
         const Feature& feature = kind.features[n * stride];
-        Correspondence<Factor>& correspondence = correspondences[n * stride];
+        Correspondence& correspondence = correspondences[n * stride];
         correspondence.point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
         correspondence.since_reference = trajectory.sinceReference(feature.time);
         if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
@@ -122,10 +101,9 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          Correspondences& correspondences)
 {
   const RegistrationParameters& parameters = problem.parameters;
-  const FeatureKindProblem<LineFit> edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors,
-                                          fitLine};
-  const FeatureKindProblem<PlaneFit> planes{source.planes, plane_weights, *problem.target.planes,
-                                            parameters.plane_neighbors, fitPlane};
+  const FeatureKindProblem edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors, fitLine};
+  const FeatureKindProblem planes{source.planes, plane_weights, *problem.target.planes, parameters.plane_neighbors,
+                                  fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
   weighByScatter(plane_weights, parameters.plane_scatter, correspondences.planes);

@@ -9,33 +9,28 @@
 #include <pcl_floam/registration/feature_registration.h>
 #include <pcl_floam/registration/registration_parameters.h>
 
-#include <array>
 #include <limits>
 #include <vector>
 
 namespace pcl_floam {
 
-/// A source point and the factor that holds it.
+/// A source point and the line or plane of the map that holds it.
 ///
 /// The factor is kept while the point moves by less than a fiftieth of the search radius: the neighbours there tell
 /// of the same surface, and searching is what takes the time.
-template <typename Factor>
 struct Correspondence {
-  Eigen::Vector3d point;  ///< now, in the target's axes, relative to the local origin
-  Factor factor;          ///< in the same frame
-  double weight = 0.0;    ///< W of Eq. 9; 0 where no line or plane was found
-  double variance = 0.0;  ///< of the plane at the point, m^2; 0 for lines
-  /// What the plane's normal may be off, one standard deviation along each axis; zero for lines.
-  std::array<Eigen::Vector3d, 2> tilt = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  double since_reference = 0.0;  ///< fraction of the sweep from the pose's instant to the point's
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< now, in the target's axes, relative to the local origin
+  Factor factor;                                    ///< in the same frame
+  double weight = 0.0;                              ///< W of Eq. 9; 0 where no line or plane was found
+  double since_reference = 0.0;                     ///< fraction of the sweep from the pose's instant to the point's
   /// Where the neighbours were searched, in the same frame.
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
 };
 
 /// The correspondences of one iteration.
 struct Correspondences {
-  std::vector<Correspondence<EdgeFactor>> edges;
-  std::vector<Correspondence<PlaneFactor>> planes;
+  std::vector<Correspondence> edges;
+  std::vector<Correspondence> planes;
 };
 
 /// What a pose estimation works with, fixed over its iterations.

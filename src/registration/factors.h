@@ -5,45 +5,53 @@
 /// (sweep_trajectory.h). Gauss-Newton and Ceres use these same functions.
 #pragma once
 
+#include <pcl_floam/filters/feature_kind.h>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
+
 namespace pcl_floam {
 
-/// Point-to-line factor (Eq. 5).
+/// The line that holds an edge (Eq. 5), or the plane that holds a plane feature (Eq. 7).
 ///
-/// The residual is the vector from the line to the point, (I - n n^T)(Tp - p^g). Its norm is the |(Tp - p^g) x n| of
-/// Eq. 5 and so is the cost, but unlike p_n of Eq. 6 its derivative exists at distance zero, and Gauss-Newton sees
-/// that the point is held in both directions across the line, where the scalar of Eq. 13 holds it in one.
-struct EdgeFactor {
-  static constexpr int kResiduals = 3;
-  Eigen::Vector3d center;     ///< p_E^g
-  Eigen::Vector3d direction;  ///< n_E^g, unit
+/// The residual is the vector from the line or plane to the point, P (Tp - p^g) with P = I - n n^T or n n^T. Its norm
+/// is the |(Tp - p^g) x n| of Eq. 5 or the distance of Eq. 7 and so is the cost; but unlike p_n of Eq. 6 an edge's
+/// derivative exists at distance zero, and Gauss-Newton sees that the point is held in both directions across the line,
+/// where the scalar of Eq. 13 holds it in one. Eq. 14 prints the line's direction for the plane's normal.
+struct Factor {
+  FeatureKind kind = FeatureKind::plane;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();      ///< p_E^g or p_S^g
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< of the line, or across the plane: n_E^g or n_S^g, unit
+  double variance = 0.0;                                 ///< of a plane at the point that it holds, m^2; 0 for lines
+  /// By what a plane's normal may be off: its covariance is the sum of their outer products. Zero for lines.
+  std::array<Eigen::Vector3d, 2> tilt = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
 
   [[nodiscard]] Eigen::Vector3d residual(const Eigen::Vector3d& point) const
   {
     const Eigen::Vector3d difference = point - center;
-    return difference - direction * direction.dot(difference);
+    const Eigen::Vector3d along = direction * direction.dot(difference);
+    return kind == FeatureKind::plane ? along : Eigen::Vector3d(difference - along);
   }
-  [[nodiscard]] double squaredResidual(const Eigen::Vector3d& point) const { return residual(point).squaredNorm(); }
+
+  /// P.
   [[nodiscard]] Eigen::Matrix3d derivative() const
   {
-    return Eigen::Matrix3d::Identity() - direction * direction.transpose();
+    const Eigen::Matrix3d along = direction * direction.transpose();
+    return kind == FeatureKind::plane ? along : Eigen::Matrix3d(Eigen::Matrix3d::Identity() - along);
   }
-};
 
-/// Point-to-plane factor (Eq. 7), derivative n_S^g (Eq. 14, which prints the line's direction for it).
-struct PlaneFactor {
-  static constexpr int kResiduals = 1;
-  Eigen::Vector3d center;  ///< p_S^g
-  Eigen::Vector3d normal;  ///< n_S^g, unit
-
-  [[nodiscard]] Eigen::Matrix<double, 1, 1> residual(const Eigen::Vector3d& point) const
+  /// One across a plane, two across a line: they say all that the residual says.
+  [[nodiscard]] int directions() const { return kind == FeatureKind::plane ? 1 : 2; }
+  [[nodiscard]] Eigen::Vector3d heldDirection(int i) const
   {
-    return Eigen::Matrix<double, 1, 1>(normal.dot(point - center));
+    if (kind == FeatureKind::plane) {
+      return direction;
+    }
+    const Eigen::Vector3d across = direction.unitOrthogonal();
+    return i == 0 ? across : Eigen::Vector3d(direction.cross(across));
   }
-  [[nodiscard]] double squaredResidual(const Eigen::Vector3d& point) const { return residual(point).squaredNorm(); }
-  [[nodiscard]] Eigen::RowVector3d derivative() const { return normal.transpose(); }
 };
 
 }  // namespace pcl_floam

@@ -112,9 +112,8 @@ private:
                         correspondences_);
     const KernelScales scales = adaptKernelScales(problem_, correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
-    lock(problem_.parameters.locked, equations_);
     ++report_.iterations;
-    if (equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
+    if (equations_.count() < problem_.parameters.min_correspondences) {
       if (stride_ > 1) {
         stride_ = 1;
         return false;
@@ -125,11 +124,15 @@ private:
     return take(solve(scales));
   }
 
+  [[nodiscard]] InformationAnalysis analysis() const
+  {
+    return InformationAnalysis(equations_, problem_.parameters.weak_threshold, freeMotions(problem_.parameters.locked));
+  }
+
   [[nodiscard]] Vector6 solve(const KernelScales& scales) const
   {
-    return problem_.parameters.solver == SolverKind::ceres
-               ? solveWithCeres(problem_, model_, correspondences_, scales)
-               : InformationAnalysis(equations_, problem_.parameters.weak_threshold).step();
+    return problem_.parameters.solver == SolverKind::ceres ? solveWithCeres(problem_, model_, correspondences_, scales)
+                                                           : analysis().step();
   }
 
   /// Applies a step on the left (Eq. 11). \return true when the iterations are over
@@ -171,43 +174,21 @@ private:
     if (!pose().isFinite()) {
       report_.termination = Termination::degenerate;
     }
-    if (report_.hasConverged() && equations_.edges + equations_.planes < problem_.parameters.min_correspondences) {
+    if (report_.hasConverged() && equations_.count() < problem_.parameters.min_correspondences) {
       report_.termination = Termination::too_few_correspondences;  // the last iteration found that a quarter is too few
     }
     if (!report_.hasConverged() || !(equations_.weight > 0.0)) {
       return report_;
     }
-    const InformationAnalysis analysis(equations_, problem_.parameters.weak_threshold);
+    const InformationAnalysis analysis = this->analysis();
     report_.target_T_source = pose();
     report_.cost = equations_.cost;
-    report_.residual_rms = std::sqrt(equations_.weighted_squares / equations_.weight);
+    report_.residual_rms = std::sqrt(equations_.residualVariance());
     report_.information = equations_.information;
     report_.sweep_twist = trajectory_.twist();
-    report_.covariance = analysis.covariance();
-    report_.weak_directions = analysis.weakDirections();
-    clearLocked();
+    report_.covariance = analysis.covariance(featureVariance(equations_));
+    report_.weak_directions = analysis.weakDirections(problem_.parameters.weak_threshold);
     return report_;
-  }
-
-  /// Locked degrees of freedom are known, not weak.
-  void clearLocked()
-  {
-    const DegreesOfFreedom& locked = problem_.parameters.locked;
-    const auto isLocked = [&locked](const WeakDirection& weak) {
-      double part = 0.0;
-      for (std::size_t i = 0; i < locked.size(); ++i) {
-        part += locked[i] ? weak.direction[static_cast<int>(i)] * weak.direction[static_cast<int>(i)] : 0.0;
-      }
-      return part > 0.5;
-    };
-    auto& weak = report_.weak_directions;
-    weak.erase(std::remove_if(weak.begin(), weak.end(), isLocked), weak.end());
-    for (int i = 0; i < 6; ++i) {
-      if (locked[static_cast<std::size_t>(i)]) {
-        report_.covariance.row(i).setZero();
-        report_.covariance.col(i).setZero();
-      }
-    }
   }
 
   const FeatureSet& source_;

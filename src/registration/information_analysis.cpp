@@ -3,86 +3,148 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
 
 namespace {
 
-using Matrix6d = Eigen::Matrix<double, 6, 6>;  // Eigen 3.4's solvers do not take unaligned types
+/// Directions with less than this share of the largest eigenvalue are held by nothing but rounding.
+constexpr double kNoInformation = 1e-9;
 
-/// Neighbouring residuals share the errors of the map's planes and of the sweep's motion: so many say no more than one
-/// that is independent.
-constexpr double kFeaturesPerIndependentOne = 7.0;
+/// Sums and eigenvalues are divided by no less.
+constexpr double kSmallest = 1e-300;
+
+/// Gram and Schmidt's: an orthonormal basis of what columns have beside those of an orthonormal basis.
+Motions orthonormalBeside(const Motions& known, const Motions& columns)
+{
+  constexpr double kDependent = 1e-6;
+  Motions all = known;
+  for (int i = 0; i < columns.cols() && all.cols() < 6; ++i) {
+    Eigen::Matrix<double, 6, 1> column = columns.col(i).normalized();
+    for (int j = 0; j < all.cols(); ++j) {
+      column -= all.col(j).dot(column) * all.col(j);
+    }
+    if (column.norm() > kDependent) {
+      all.conservativeResize(6, all.cols() + 1);
+      all.rightCols<1>() = column.normalized();
+    }
+  }
+  return all.rightCols(all.cols() - known.cols());
+}
 
 }  // namespace
 
-InformationAnalysis::InformationAnalysis(const NormalEquations& equations, double weak_threshold)
-    : equations_(equations), weak_threshold_(weak_threshold)
+Motions freeMotions(const DegreesOfFreedom& locked, const Eigen::Vector3d& arm)
 {
-  const double extent = std::sqrt(equations.squared_extent / equations.weight);
-  const double per_metre = extent > 0.0 ? 1.0 / extent : 1.0;
-  scale_ << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
-  const auto scaled = [&](const Matrix6& m) {
-    return Matrix6d(scale_.asDiagonal() * m * scale_.asDiagonal() / equations.weight);
-  };
-  scaled_ = scaled(equations.information);
-  const Matrix6d known =
-      weak_threshold > 0.0 ? Matrix6d(scaled_ - scaled(equations.noise_information)) : Matrix6d(scaled_);
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(known);
-  eigenvalues_ = solver.eigenvalues();
-  eigenvectors_ = solver.eigenvectors();
+  Motions free(6, 0);
+  for (int i = 0; i < 6; ++i) {
+    if (!locked[static_cast<std::size_t>(i)]) {
+      Eigen::Matrix<double, 6, 1> motion = Eigen::Matrix<double, 6, 1>::Unit(i);
+      motion.head<3>() += Eigen::Vector3d(motion.tail<3>()).cross(arm);
+      free.conservativeResize(6, free.cols() + 1);
+      free.rightCols<1>() = motion;
+    }
+  }
+  return free;
 }
 
-Matrix6 InformationAnalysis::strongInverse() const
+InformationAnalysis::InformationAnalysis(const NormalEquations& equations, double weak_threshold, const Motions& free,
+                                         const Motions& held)
+    : equations_(equations), weak_threshold_(weak_threshold), weight_(std::max(equations.weight, kSmallest))
 {
-  // In the eigenvectors' axes. H may say a little of weak directions, too: its parts that lead there are cut off.
-  Matrix6d turned = eigenvectors_.transpose() * scaled_ * eigenvectors_;
-  for (int i = 0; i < 6; ++i) {
-    if (isWeak(i)) {
-      turned.row(i).setZero();
-      turned.col(i).setZero();
-      turned(i, i) = 1.0;
-    }
+  const double extent = std::sqrt(equations.squared_extent / weight_);
+  const double per_metre = extent > 0.0 ? 1.0 / extent : 1.0;
+  scale_ << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
+  const auto lengths = [this](const Motions& motions) { return Motions(scale_.cwiseInverse().asDiagonal() * motions); };
+  const Motions basis = orthonormalBeside(orthonormalBeside(Motions(6, 0), lengths(held)), lengths(free));
+  eigenvectors_.resize(6, basis.cols());
+  if (basis.cols() == 0) {
+    return;
   }
-  Matrix6d inverse = turned.ldlt().solve(Matrix6d::Identity());
-  for (int i = 0; i < 6; ++i) {
-    if (isWeak(i)) {
-      inverse(i, i) = 0.0;
-    }
+  const auto scaled = [&](const Matrix6& m) {
+    return Within(basis.transpose() * (scale_.asDiagonal() * m * scale_.asDiagonal()) * basis / weight_);
+  };
+  const Within all = scaled(equations.information);
+  const Within known = weak_threshold > 0.0 ? Within(all - scaled(equations.noise_information)) : all;
+  const Eigen::SelfAdjointEigenSolver<Within> solver(known);
+  eigenvalues_ = solver.eigenvalues();
+  eigenvectors_ = basis * solver.eigenvectors();
+  invert(solver.eigenvectors().transpose() * all * solver.eigenvectors());
+}
+
+/// H may say a little of weak directions, too: its parts that lead there are cut off.
+void InformationAnalysis::invert(Within turned)
+{
+  const int weak = below(leastInformation());
+  turned.topRows(weak).setZero();
+  turned.leftCols(weak).setZero();
+  turned.diagonal().head(weak).setOnes();
+  inverse_ = turned.ldlt().solve(Within::Identity(turned.rows(), turned.cols()));
+  inverse_.diagonal().head(weak).setZero();
+}
+
+double InformationAnalysis::largest() const
+{
+  return eigenvalues_.size() > 0 ? std::max(eigenvalues_.maxCoeff(), kSmallest) : kSmallest;
+}
+
+double InformationAnalysis::leastInformation() const
+{
+  return std::max(weak_threshold_, kNoInformation * largest());
+}
+
+int InformationAnalysis::below(double limit) const
+{
+  int count = 0;
+  while (count < eigenvalues_.size() && eigenvalues_[count] < limit) {
+    ++count;
   }
-  return eigenvectors_ * inverse * eigenvectors_.transpose();
+  return count;
 }
 
 Vector6 InformationAnalysis::step() const
 {
-  const Vector6 gradient = scale_.asDiagonal() * equations_.gradient / equations_.weight;
-  return -(scale_.asDiagonal() * (strongInverse() * gradient));
+  const Motions motions = scale_.asDiagonal() * eigenvectors_;
+  return -(motions * (inverse_ * (motions.transpose() * equations_.gradient / weight_)));
 }
 
-Matrix6 InformationAnalysis::covariance() const
+Matrix6 InformationAnalysis::covariance(double variance, const std::vector<double>& shares) const
 {
-  Matrix6 inverse = strongInverse();
-  for (int i = 0; i < 6; ++i) {
-    if (isWeak(i)) {
-      inverse += eigenvectors_.col(i) * eigenvectors_.col(i).transpose() / kNoInformation;
-    }
+  const double most = 1.0 / (kNoInformation * largest());
+  Within inverse = inverse_;
+  for (int i = 0; i < below(leastInformation()); ++i) {
+    inverse(i, i) = most;
   }
-  return poseVariance() / equations_.weight * (scale_.asDiagonal() * inverse * scale_.asDiagonal());
+  // Where the pull grows by less than it seems, the noise that it has moves the pose by as much more.
+  for (int i = 0; i < static_cast<int>(shares.size()); ++i) {
+    const double times = std::min(1.0 / shares[static_cast<std::size_t>(i)], std::sqrt(most / inverse(i, i)));
+    inverse.row(i) *= times;
+    inverse.col(i) *= times;
+  }
+  const Motions motions = scale_.asDiagonal() * eigenvectors_;
+  return variance / weight_ * (motions * inverse * motions.transpose());
 }
 
-double InformationAnalysis::poseVariance() const
-{
-  return kFeaturesPerIndependentOne * meanWeight() * residualVariance();
-}
-
-std::vector<WeakDirection> InformationAnalysis::weakDirections() const
+std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, const std::vector<double>& shares) const
 {
   std::vector<WeakDirection> weak;
-  for (int i = 0; i < 6 && weak_threshold_ > 0.0 && eigenvalues_[i] < weak_threshold_; ++i) {
-    weak.push_back({eigenvectors_.col(i), std::max(0.0, eigenvalues_[i])});
+  for (int i = 0; i < below(limit); ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    const double share = n < shares.size() ? shares[n] : 1.0;
+    weak.push_back({eigenvectors_.col(i), std::max(0.0, share * share * eigenvalues_[i])});
   }
   return weak;
+}
+
+/// Neighbouring residuals share the errors of the map's planes and of the sweep's motion: so many say no more than one
+/// that is independent.
+double featureVariance(const NormalEquations& equations)
+{
+  constexpr double kFeaturesPerIndependentOne = 7.0;
+  const double mean_weight = equations.given_weight / (equations.edges + equations.planes);
+  return kFeaturesPerIndependentOne * mean_weight * equations.residualVariance();
 }
 
 }  // namespace pcl_floam

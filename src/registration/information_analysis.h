@@ -6,10 +6,18 @@
 
 #include <pcl_floam/registration/registration_report.h>
 
-#include <algorithm>
+#include <Eigen/Core>
+
 #include <vector>
 
 namespace pcl_floam {
+
+/// Perturbations about the local origin, one a column.
+using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+/// Those of the degrees of freedom of a frame that are not locked.
+/// \param arm from the frame's origin to the local origin, in the target's axes
+[[nodiscard]] Motions freeMotions(const DegreesOfFreedom& locked, const Eigen::Vector3d& arm = Eigen::Vector3d::Zero());
 
 /// Eigen-analysis of H in metres: rotations are scaled by the root mean square distance of the points, so that an
 /// eigenvalue tells how well a displacement of the typical point is seen, whatever its direction.
@@ -17,43 +25,63 @@ namespace pcl_floam {
 /// What the noise of the normals seems to tell is taken out before a direction is called weak or strong: along a smooth
 /// corridor that is all there is.
 class InformationAnalysis {
+  using Column = Eigen::Matrix<double, 6, 1>;  // Eigen 3.4's solvers do not take unaligned types
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
+  using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
 public:
   /// \param weak_threshold eigenvalues per correspondence below this are weak; 0: none is, and noise is not looked for
-  InformationAnalysis(const NormalEquations& equations, double weak_threshold);
+  /// \param held           perturbations that are taken out of the free ones
+  explicit InformationAnalysis(const NormalEquations& equations, double weak_threshold = 0.0,
+                               const Motions& free = Motions::Identity(6, 6), const Motions& held = Motions(6, 0));
 
   /// The Gauss-Newton step -H^-1 b; zero along weak directions, where following the noise would only do harm
   /// (solution remapping after Zhang and Singh, 2016).
   [[nodiscard]] Vector6 step() const;
 
+  /// How many directions, from the least to the best held, have an eigenvalue below a limit.
+  [[nodiscard]] int below(double limit) const;
+  [[nodiscard]] double largest() const;
+
+  /// A perturbation along direction \p i that moves the typical point by 1 m, and the gradient along it per m, as the
+  /// correspondences stand.
+  [[nodiscard]] Vector6 motion(int i) const { return scale_.asDiagonal() * eigenvectors_.col(i); }
+  [[nodiscard]] double stiffness(int i) const { return eigenvalues_[i] * weight_; }
+
+  /// What a perturbation has along direction \p i, m.
+  [[nodiscard]] double part(const Vector6& perturbation, int i) const
+  {
+    return eigenvectors_.col(i).dot(scale_.cwiseInverse().asDiagonal() * perturbation);
+  }
+
+  /// By how much a perturbation moves the typical point, m.
+  [[nodiscard]] double length(const Vector6& perturbation) const
+  {
+    return (scale_.cwiseInverse().asDiagonal() * perturbation).norm();
+  }
+
   /// Covariance of the perturbation; weak directions get the variance of an eigenvalue near zero.
-  [[nodiscard]] Matrix6 covariance() const;
+  /// \param variance of a residual of weight 1, m^2
+  /// \param shares   of the first directions: how much of their eigenvalue is true, see WeakDirections
+  [[nodiscard]] Matrix6 covariance(double variance, const std::vector<double>& shares = {}) const;
 
-  [[nodiscard]] std::vector<WeakDirection> weakDirections() const;
-
-  /// Weighted mean of the squared residuals, m^2.
-  [[nodiscard]] double residualVariance() const { return equations_.weighted_squares / equations_.weight; }
-
-  /// Variance of a residual of weight 1, were they independent, as the poses' errors show it, m^2.
-  [[nodiscard]] double poseVariance() const;
-
-  /// Mean of the given weights: what one correspondence counts in the sums.
-  [[nodiscard]] double meanWeight() const { return equations_.given_weight / (equations_.edges + equations_.planes); }
+  /// The directions with eigenvalues below a limit.
+  [[nodiscard]] std::vector<WeakDirection> weakDirections(double limit, const std::vector<double>& shares = {}) const;
 
 private:
-  /// An eigenvalue of less is rounding: nothing is known of the direction, whatever the threshold.
-  static constexpr double kNoInformation = 1e-9;
-
-  [[nodiscard]] bool isWeak(int i) const { return !(eigenvalues_[i] >= std::max(weak_threshold_, kNoInformation)); }
-
-  /// Inverse of the scaled H within the strong directions, zero along weak ones.
-  [[nodiscard]] Matrix6 strongInverse() const;
+  [[nodiscard]] double leastInformation() const;
+  void invert(Within turned);
 
   const NormalEquations& equations_;
   double weak_threshold_;
-  Vector6 scale_;         ///< from scaled unknowns (all in m) to (m, rad)
-  Vector6 eigenvalues_;   ///< of the scaled H without noise over the sum of the weights
-  Matrix6 eigenvectors_;  ///< columns, of the same
-  Matrix6 scaled_;        ///< the scaled H over the sum of the weights
+  double weight_;         ///< sum of the weights, not zero
+  Column scale_;          ///< from scaled unknowns (all in m) to (m, rad)
+  Values eigenvalues_;    ///< of the scaled H without noise over the sum of the weights, within the free motions
+  Motions eigenvectors_;  ///< columns, of the same
+  Within inverse_;        ///< of H in their axes within the strong directions, zero along weak ones
 };
+
+/// Variance of a residual of weight 1 of features, were they independent, as the poses' errors show it, m^2.
+[[nodiscard]] double featureVariance(const NormalEquations& equations);
 
 }  // namespace pcl_floam

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "registration/cloud_pyramid.h"
+#include "registration/normal_equations.h"
+#include "registration/residual_rows.h"
 
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/registration/cloud_registration.h>
@@ -14,20 +16,6 @@
 
 namespace pcl_floam {
 
-/// Sums over all matches, for a perturbation on the left that turns about the source's centroid.
-struct AlignmentSums {
-  Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> gradient = Eigen::Matrix<double, 6, 1>::Zero();
-  double cost = 0.0;              ///< half the sum of the kernel's costs, m^2
-  double weighted_squares = 0.0;  ///< sum w d^2, m^2
-  double weight = 0.0;            ///< sum w tr(M): one per residual's dimension
-  int lines = 0, planes = 0, points = 0;
-  int line_inliers = 0, plane_inliers = 0;
-
-  AlignmentSums& operator+=(const AlignmentSums& other);
-  [[nodiscard]] int count() const { return lines + planes + points; }
-};
-
 /// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
 class LevelAlignment {
 public:
@@ -37,10 +25,11 @@ public:
   LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
                  double along, bool robust = true, double width = 0.0);
 
-  /// Finds the matches at a pose and sums up what they say.
+  /// Finds the matches at a pose and sums up what they say of a perturbation on the left that turns about the source's
+  /// centroid. A match's weight is that of its three dimensions.
   /// \param to_frames from the pose between the origins to the one between the clouds' frames
   template <typename ToFrames>
-  AlignmentSums evaluate(const SE3& pose, const ToFrames& to_frames)
+  NormalEquations evaluate(const SE3& pose, const ToFrames& to_frames)
   {
     findMatches(pose, to_frames);
     if (run_.reject || run_.wants_matches) {
@@ -61,8 +50,8 @@ private:
   /// What a match says: the difference of its points, and how much each direction of it counts.
   struct Residual {
     Eigen::Vector3f difference;
-    float xx, xy, xz, yy, yz, zz;  ///< M, symmetric
-    float squared;                 ///< difference^T M difference, m^2; negative without a match
+    Eigen::Matrix3f m;
+    float squared;  ///< difference^T M difference, m^2; negative without a match
   };
 
   /// What the last search for a source point's nearest target point came to. While the point moves little, it tells the
@@ -98,8 +87,8 @@ private:
   void keepListed();
   void weigh(const SE3& pose);
   [[nodiscard]] Residual residual(const SE3& pose, std::size_t i) const;
-  [[nodiscard]] AlignmentSums sum(const SE3& pose) const;
-  void accumulate(const SE3& pose, std::size_t i, AlignmentSums& sums) const;
+  [[nodiscard]] NormalEquations sum(const SE3& pose) const;
+  void accumulate(const SE3& pose, std::size_t i, ResidualRows& rows, NormalEquations& sums) const;
 
   const CloudLevel& source_;
   const CloudLevel& target_;

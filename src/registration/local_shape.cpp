@@ -1,6 +1,6 @@
 #include "registration/local_shape.h"
 
-#include <Eigen/Eigenvalues>
+#include "common/point_moments.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,39 +32,22 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
   if (neighbors.count() < 4) {
     return shape;
   }
-  // Sums of the offsets and of their products, by hand: half of a symmetric matrix is enough.
-  double x = 0.0, y = 0.0, z = 0.0, xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
+  PointMoments moments;
   for (int i = 0; i < neighbors.count(); ++i) {
-    const Eigen::Vector3d d = (tree.points()[static_cast<std::size_t>(neighbors.index(i))] - point).cast<double>();
-    x += d.x();
-    y += d.y();
-    z += d.z();
-    xx += d.x() * d.x();
-    xy += d.x() * d.y();
-    xz += d.x() * d.z();
-    yy += d.y() * d.y();
-    yz += d.y() * d.z();
-    zz += d.z() * d.z();
+    moments.add((tree.points()[static_cast<std::size_t>(neighbors.index(i))] - point).cast<double>());
   }
-  const double count = neighbors.count();
-  const Eigen::Vector3d sum(x, y, z);
-  Eigen::Matrix3d squares;
-  squares << xx, xy, xz, xy, yy, yz, xz, yz, zz;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(squares / count - sum * sum.transpose() / (count * count));
-  const Eigen::Vector3d& eigenvalues = solver.eigenvalues();
-  if (!(eigenvalues[2] > 0.0)) {
+  const PrincipalAxes axes = moments.axes();
+  if (!(axes.variance[2] > 0.0)) {
     return shape;
   }
-  if (eigenvalues[1] < kLineRatio * eigenvalues[2]) {
+  if (axes.variance[1] < kLineRatio * axes.variance[2]) {
     shape.kind = ShapeKind::line;
-    shape.axis = solver.eigenvectors().col(2).cast<float>();
-  } else if (eigenvalues[0] < kPlaneRatio * eigenvalues[1]) {
+    shape.axis = axes.direction.col(2).cast<float>();
+  } else if (axes.variance[0] < kPlaneRatio * axes.variance[1]) {
     shape.kind = ShapeKind::plane;
-    shape.axis = solver.eigenvectors().col(0).cast<float>();
+    shape.axis = axes.direction.col(0).cast<float>();
   }
-  const Eigen::Vector3d to_centre =
-      tree.size() < kSparsePoints ? Eigen::Vector3d::Zero() : Eigen::Vector3d(sum / count);
+  const Eigen::Vector3d to_centre = tree.size() < kSparsePoints ? Eigen::Vector3d::Zero() : moments.mean();
   const Eigen::Vector3d axis = shape.axis.cast<double>();
   if (shape.kind == ShapeKind::plane) {
     shape.to_surface = (axis * axis.dot(to_centre)).cast<float>();

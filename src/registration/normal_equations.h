@@ -7,6 +7,9 @@
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/registration/sweep_model.h>
 
+#include <cstddef>
+#include <functional>
+
 namespace pcl_floam {
 
 /// Scale of the robust kernel for each kind of residual, m.
@@ -38,11 +41,25 @@ struct NormalEquations {
   double weight = 0.0;                          ///< sum w
   double given_weight = 0.0;                    ///< sum W, without the robust kernel's say
   double squared_extent = 0.0;                  ///< sum w |q|^2: spread of the points about the local origin, m^2
-  int edges = 0;
-  int planes = 0;
+  int edges = 0;                                ///< points held by a line, ...
+  int planes = 0;                               ///< ... by a plane, ...
+  int points = 0;                               ///< ... and by a point that is part of neither
   int edge_inliers = 0;
   int plane_inliers = 0;
+
+  NormalEquations& operator+=(const NormalEquations& other);
+  [[nodiscard]] int count() const { return edges + planes + points; }
+
+  /// Weighted mean of the squared residuals, m^2.
+  [[nodiscard]] double residualVariance() const { return weight > 0.0 ? weighted_squares / weight : 0.0; }
 };
+
+/// Adds up what each of some chunks of elements comes to, in order: the same bits for every number of threads.
+/// \param count  of all elements
+/// \param sumsOf of the elements from the first to the one before the last
+[[nodiscard]] NormalEquations sumOfChunks(
+    std::size_t count, std::size_t per_chunk, int threads,
+    const std::function<NormalEquations(std::size_t first, std::size_t last)>& sumsOf);
 
 /// \return the sums, bit-identical for every number of threads: fixed chunks, added in order
 [[nodiscard]] NormalEquations buildNormalEquations(const RegistrationProblem& problem,
@@ -51,8 +68,5 @@ struct NormalEquations {
 /// The equations as the model's pose sees them: where the twist follows from the pose, a change of the pose moves
 /// points measured before its instant less, and points after it more.
 [[nodiscard]] NormalEquations reducedToPose(const NormalEquations& equations, const SweepModel& model);
-
-/// Takes out all that the equations say about locked degrees of freedom.
-void lock(const DegreesOfFreedom& locked, NormalEquations& equations);
 
 }  // namespace pcl_floam

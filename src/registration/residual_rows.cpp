@@ -31,6 +31,31 @@ struct ThreeSums {
   double of[3];
 };
 
+/// Of a b w and a c w for a weight. \param n a multiple of the lanes
+PCL_FLOAM_MULTI_VERSION
+void weightedProducts(const double* a, const double* b, const double* c, const double* w, std::size_t n, double& with_b,
+                      double& with_c)
+{
+  Lanes sum_b = {};
+  Lanes sum_c = {};
+  for (std::size_t i = 0; i < n; i += kLanes) {
+    Lanes left;
+    Lanes weight;
+    Lanes right_b;
+    Lanes right_c;
+    load(a + i, left);
+    load(w + i, weight);
+    load(b + i, right_b);
+    load(c + i, right_c);
+    right_b *= left;
+    right_c *= left;
+    sum_b += weight * right_b;
+    sum_c += weight * right_c;
+  }
+  addUp(sum_b, with_b);
+  addUp(sum_c, with_c);
+}
+
 /// Of a b w and a c w for each of three weights. \param n a multiple of the lanes
 PCL_FLOAM_MULTI_VERSION
 void weightedProducts(const double* a, const double* b, const double* c, const std::array<const double*, 3>& w,
@@ -74,7 +99,23 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
   weight_[0][size_] = weight;
   weight_[1][size_] = since_middle * weight;
   weight_[2][size_] = since_middle * since_middle * weight;
+  is_timed_ = is_timed_ || since_middle != 0.0;
   ++size_;
+}
+
+/// M = sum d u u^T (LDL^T).
+void ResidualRows::add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm,
+                       double weight)
+{
+  Eigen::Matrix3d rest = m;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double d = rest(i, i);
+    if (d > 0.0) {
+      const Eigen::Vector3d u = rest.col(i) / d;
+      rest -= d * u * u.transpose();
+      add(u, arm, u.dot(difference), d * weight, 0.0);
+    }
+  }
 }
 
 void ResidualRows::addTo(NormalEquations& equations)
@@ -83,12 +124,16 @@ void ResidualRows::addTo(NormalEquations& equations)
     add(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, 0.0, 0.0);
   }
   const std::array<const double*, 3> weights = {weight_[0].data(), weight_[1].data(), weight_[2].data()};
-  std::array<ThreeSums, kColumns + 1> sums;
+  std::array<ThreeSums, kColumns + 1> sums{};
   for (std::size_t i = 0; i < kResidual; ++i) {
     for (std::size_t j = i; j < kColumns; j += 2) {
-      const std::size_t next = std::min(j + 1, kResidual);
-      weightedProducts(column_[i].data(), column_[j].data(), column_[next].data(), weights, size_, sums[j],
-                       sums[j + 1]);
+      const double* next = column_[std::min(j + 1, kResidual)].data();
+      if (is_timed_) {
+        weightedProducts(column_[i].data(), column_[j].data(), next, weights, size_, sums[j], sums[j + 1]);
+      } else {
+        weightedProducts(column_[i].data(), column_[j].data(), next, weights[0], size_, sums[j].of[0],
+                         sums[j + 1].of[0]);
+      }
     }
     const auto row = static_cast<Eigen::Index>(i);
     for (std::size_t j = i; j < kResidual; ++j) {

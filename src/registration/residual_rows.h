@@ -15,11 +15,13 @@ class ResidualRows {
 public:
   static constexpr std::size_t kRoom = 192;
 
-  void clear() { size_ = 0; }
-
   /// \param arm from the local origin to the point
   void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
            double since_middle);
+
+  /// The three residuals that a difference makes whose directions count differently: its square is d^T M d.
+  /// \param m symmetric, positive definite
+  void add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm, double weight);
 
   /// H, b and what couples pose and velocity in them (Eq. 10), bit-identical for every processor.
   void addTo(NormalEquations& equations);
@@ -31,6 +33,7 @@ private:
   static constexpr std::size_t kColumns = 7;
 
   std::size_t size_ = 0;
+  bool is_timed_ = false;  ///< else all were measured at the pose's instant
   std::array<Column, kColumns> column_;
   std::array<Column, 3> weight_;  ///< times the time since mid-sweep to the power of 0, 1, 2
 };

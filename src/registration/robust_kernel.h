@@ -2,9 +2,13 @@
 /// Influence of large residuals, as weights of iteratively reweighted least squares.
 #pragma once
 
+#include "common/median.h"
+
 #include <pcl_floam/registration/registration_parameters.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -33,6 +37,14 @@ namespace pcl_floam {
     case RobustKernel::geman_mcclure: return squared_residual / (1.0 + ratio2);
   }
   return squared_residual;
+}
+
+/// A kernel's scale that follows the spread of the residuals: for normally distributed ones, 1.4826 medians of the
+/// absolute value are one standard deviation. Changes the squares' order.
+template <typename T>
+[[nodiscard]] double kernelScale(std::vector<T>& squared_residuals, double deviations, double smallest)
+{
+  return std::max(smallest, deviations * 1.4826 * std::sqrt(static_cast<double>(medianOf(squared_residuals))));
 }
 
 }  // namespace pcl_floam

@@ -112,7 +112,7 @@ LevelAlignment StartSearch::surfaces(std::size_t level) const
 /// What the typical match of surfaces on a level costs at a pose.
 double StartSearch::cost(std::size_t level, const SE3& pose) const
 {
-  const AlignmentSums sums = surfaces(level).evaluate(pose, [this](const SE3& p) { return alignment_.toFrames(p); });
+  const NormalEquations sums = surfaces(level).evaluate(pose, [this](const SE3& p) { return alignment_.toFrames(p); });
   return sums.count() > 0 ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
 }
 

@@ -24,7 +24,7 @@ WeakDirections::WeakDirections(CloudAlignment& alignment, LevelAlignment& level,
 bool WeakDirections::settle(const SE3& guess, double epsilon)
 {
   for (int i = 0; i < kSteps; ++i) {
-    FreeMotions weak(6, 0);
+    Motions weak(6, 0);
     const Vector6 step = this->step(guess, weak);
     if (weak.cols() == 0) {
       return i > 0;
@@ -32,7 +32,7 @@ bool WeakDirections::settle(const SE3& guess, double epsilon)
     alignment_.move(step);
     alignment_.hold(weak);
     alignment_.align(level_, kIterations, epsilon, false);
-    alignment_.hold(FreeMotions(6, 0));
+    alignment_.hold(Motions(6, 0));
     if (alignment_.analysis().length(step) < epsilon) {
       return true;
     }
@@ -41,15 +41,15 @@ bool WeakDirections::settle(const SE3& guess, double epsilon)
 }
 
 /// \param[out] weak the weak directions
-Vector6 WeakDirections::step(const SE3& guess, FreeMotions& weak)
+Vector6 WeakDirections::step(const SE3& guess, Motions& weak)
 {
-  const AlignmentSums sums = alignment_.sums();
-  const AlignmentAnalysis analysis = alignment_.analysis();
+  const NormalEquations sums = alignment_.sums();
+  const InformationAnalysis analysis = alignment_.analysis();
   Vector6 since_guess;
   since_guess << alignment_.pose().translation - guess.translation,
       logSO3(alignment_.pose().rotation * guess.rotation.transpose());
   Vector6 step = Vector6::Zero();
-  for (int i = 0; i < analysis.weak(weak_); ++i) {
+  for (int i = 0; i < analysis.below(weak_ * analysis.largest()); ++i) {
     const Vector6 motion = analysis.motion(i);
     const double share = this->share(analysis, i);
     const double way =
@@ -63,23 +63,23 @@ Vector6 WeakDirections::step(const SE3& guess, FreeMotions& weak)
 
 std::vector<double> WeakDirections::shares()
 {
-  const AlignmentAnalysis analysis = alignment_.analysis();
+  const InformationAnalysis analysis = alignment_.analysis();
   std::vector<double> shares;
   shares.reserve(6);
-  for (int i = 0; i < analysis.weak(weak_); ++i) {
+  for (int i = 0; i < analysis.below(weak_ * analysis.largest()); ++i) {
     shares.push_back(share(analysis, i));
   }
   return shares;
 }
 
 /// 0 if it is not certain that anything holds the direction.
-double WeakDirections::share(const AlignmentAnalysis& analysis, int direction)
+double WeakDirections::share(const InformationAnalysis& analysis, int direction)
 {
   const Vector6 motion = analysis.motion(direction);
   const double way = level_.spacing();
   const double growth = (pull(motion, way) - pull(motion, -way)) / (2.0 * way);
   const double share = std::min(1.0, growth / analysis.stiffness(direction));
-  const double deviation = std::sqrt(analysis.variance() / analysis.stiffness(direction));
+  const double deviation = std::sqrt(alignment_.sums().residualVariance() / analysis.stiffness(direction));
   return share > 0.0 && kCertain * deviation < share * way ? share : 0.0;
 }
 
@@ -88,7 +88,7 @@ double WeakDirections::pull(const Vector6& motion, double way)
 {
   const SE3 pose = alignment_.pose();
   alignment_.move(way * motion);
-  const AlignmentSums sums =
+  const NormalEquations sums =
       level_.evaluate(alignment_.pose(), [this](const SE3& p) { return alignment_.toFrames(p); });
   alignment_.setPose(pose);
   return motion.dot(sums.gradient);

@@ -25,9 +25,9 @@ public:
   [[nodiscard]] std::vector<double> shares();
 
 private:
-  [[nodiscard]] double share(const AlignmentAnalysis& analysis, int direction);
+  [[nodiscard]] double share(const InformationAnalysis& analysis, int direction);
   [[nodiscard]] double pull(const Vector6& motion, double way);
-  [[nodiscard]] Vector6 step(const SE3& guess, FreeMotions& weak);
+  [[nodiscard]] Vector6 step(const SE3& guess, Motions& weak);
 
   CloudAlignment& alignment_;
   LevelAlignment& level_;

@@ -1,7 +1,10 @@
 #include "registration/weights.h"
 
+#include "common/median.h"
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace pcl_floam {
 
@@ -15,6 +18,18 @@ double exponentSign(FeatureKind kind, WeightScheme scheme)
   }
   const double as_printed = kind == FeatureKind::edge ? -1.0 : 1.0;
   return scheme == WeightScheme::printed ? as_printed : -as_printed;
+}
+
+double medianVariance(const std::vector<Correspondence>& planes)
+{
+  std::vector<double> variances;
+  variances.reserve(planes.size());
+  for (const auto& plane : planes) {
+    if (plane.weight > 0.0) {
+      variances.push_back(plane.factor.variance);
+    }
+  }
+  return medianOf(variances);
 }
 
 }  // namespace
@@ -38,6 +53,20 @@ std::vector<double> smoothnessWeights(const std::vector<Feature>& features, Feat
     weight *= total / sum;
   }
   return weights;
+}
+
+void weighByScatter(const std::vector<double>& weights, double scatter, std::vector<Correspondence>& planes)
+{
+  constexpr double kLeastVariance = 1e-6;  // m^2: no map is better than to a millimetre
+  if (!(scatter > 0.0)) {
+    return;
+  }
+  const double half = scatter * scatter * std::max(kLeastVariance, medianVariance(planes));
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].weight > 0.0) {
+      planes[i].weight = weights[i] * half / (half + planes[i].factor.variance);
+    }
+  }
 }
 
 }  // namespace pcl_floam

@@ -1,9 +1,11 @@
 /// \file weights.h
-/// Smoothness weights of the features (Eq. 9).
+/// What the features count: by their smoothness (Eq. 9), and planes by how well the map's points lie on them.
 #pragma once
 
+#include "registration/correspondences.h"
+
+#include <pcl_floam/filters/feature_kind.h>
 #include <pcl_floam/filters/features.h>
-#include <pcl_floam/map/keyframe_voxel_map.h>
 #include <pcl_floam/registration/registration_parameters.h>
 
 #include <vector>
@@ -13,5 +15,13 @@ namespace pcl_floam {
 /// W(p) of every feature of one kind (Eq. 9).
 [[nodiscard]] std::vector<double> smoothnessWeights(const std::vector<Feature>& features, FeatureKind kind,
                                                     WeightScheme scheme, WeightNormalization normalization);
+
+/// Weighs each linked plane by W / (1 + v / (scatter^2 m)), where v is its variance and m the median of all.
+///
+/// Five neighbours at the foot of a wall or a shelf are no plane, but tilt and lift the one that is fitted to them, and
+/// always to the same side: the floor has things standing on it, none hang below. 04_choices.sh, "planes all alike".
+/// \param weights W of Eq. 9, for each of the planes
+/// \param scatter \ref RegistrationParameters::plane_scatter; 0 leaves W
+void weighByScatter(const std::vector<double>& weights, double scatter, std::vector<Correspondence>& planes);
 
 }  // namespace pcl_floam

@@ -20,7 +20,7 @@ Correspondences floorOf(double higher)
     c.point = randomVector(random, 15.0);
     c.point.z() = 0.0;
     c.weight = 1.0 + uniform(random, 0.5);
-    c.factor = {Eigen::Vector3d(0.0, 0.0, higher), Eigen::Vector3d::UnitZ()};
+    c.factor = {FeatureKind::plane, Eigen::Vector3d(0.0, 0.0, higher), Eigen::Vector3d::UnitZ()};
   }
   return correspondences;
 }
@@ -41,7 +41,7 @@ TEST_F(InformationAnalysisTest, AWallLeavesThreeDirectionsWeak)
 {
   const NormalEquations equations = equationsOf(floorOf(0.1));
   const InformationAnalysis analysis(equations, 1e-4);
-  const auto weak = analysis.weakDirections();
+  const auto weak = analysis.weakDirections(1e-4);
   ASSERT_EQ(weak.size(), 3U);
   for (const WeakDirection& direction : weak) {  // x, y and the rotation about z
     EXPECT_NEAR(direction.direction[2], 0.0, 1e-9);
@@ -53,8 +53,8 @@ TEST_F(InformationAnalysisTest, AWallLeavesThreeDirectionsWeak)
   EXPECT_NEAR(step[0], 0.0, 1e-9);
   EXPECT_NEAR(step[1], 0.0, 1e-9);
   EXPECT_NEAR(step[5], 0.0, 1e-9);
-  EXPECT_TRUE(analysis.covariance().allFinite());
-  EXPECT_GT(analysis.covariance()(0, 0), 1e3 * analysis.covariance()(2, 2));
+  EXPECT_TRUE(analysis.covariance(1.0).allFinite());
+  EXPECT_GT(analysis.covariance(1.0)(0, 0), 1e3 * analysis.covariance(1.0)(2, 2));
 }
 
 /// The walls, floor and ceiling of a corridor along x whose fitted normals are off by some standard deviation, and the
@@ -68,13 +68,14 @@ Correspondences corridorOf(double tilt, std::size_t frames)
     const bool on_frame = i < frames;
     const Eigen::Vector3d side = i % 2 == 0 ? Eigen::Vector3d::UnitY() : Eigen::Vector3d::UnitZ();
     const Eigen::Vector3d other = i % 2 == 0 ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d::UnitY();
-    Correspondence<PlaneFactor> c;
+    Correspondence c;
     c.point = uniform(random, 15.0) * Eigen::Vector3d::UnitX() + (i % 4 < 2 ? 1.5 : -1.5) * side +
               uniform(random, 1.5) * other;
     c.weight = 1.0;
-    c.tilt = {tilt * Eigen::Vector3d::UnitX(), tilt * other};
     const Eigen::Vector3d normal = side + off(random) * Eigen::Vector3d::UnitX() + off(random) * other;
-    c.factor = {c.point + randomVector(random, 0.01), on_frame ? Eigen::Vector3d(Eigen::Vector3d::UnitX()) : normal};
+    c.factor = {FeatureKind::plane, c.point + randomVector(random, 0.01),
+                on_frame ? Eigen::Vector3d(Eigen::Vector3d::UnitX()) : normal};
+    c.factor.tilt = {tilt * Eigen::Vector3d::UnitX(), tilt * other};
     correspondences.planes.push_back(c);
   }
   return correspondences;
@@ -92,14 +93,14 @@ TEST_F(InformationAnalysisTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneW
 {
   const NormalEquations smooth = equationsOf(corridorOf(0.03, 0));
   const InformationAnalysis analysis(smooth, 2e-4);
-  const auto weak = analysis.weakDirections();
+  const auto weak = analysis.weakDirections(2e-4);
   ASSERT_EQ(weak.size(), 1U);
   EXPECT_GT(std::abs(weak.front().direction[0]), 0.99);
   EXPECT_LT(std::abs(analysis.step()[0]), 1e-3);
-  EXPECT_GT(analysis.covariance()(0, 0), 100.0 * analysis.covariance()(1, 1));
-  EXPECT_TRUE(InformationAnalysis(smooth, 0.0).weakDirections().empty());
+  EXPECT_GT(analysis.covariance(1.0)(0, 0), 100.0 * analysis.covariance(1.0)(1, 1));
+  EXPECT_TRUE(InformationAnalysis(smooth, 0.0).weakDirections(0.0).empty());
 
-  EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections().empty());
+  EXPECT_TRUE(InformationAnalysis(equationsOf(corridorOf(0.03, 20)), 2e-4).weakDirections(2e-4).empty());
 }
 
 TEST_F(InformationAnalysisTest, TheNoiseIsThatOfThePlanesThatAreLinked)
@@ -122,8 +123,8 @@ TEST_F(InformationAnalysisTest, AWallWithoutAThresholdHasAPositiveCovarianceAndA
   const NormalEquations equations = equationsOf(floorOf(0.1));
   const InformationAnalysis analysis(equations, 0.0);
   EXPECT_LT(analysis.step().norm(), 0.2);
-  EXPECT_GT(analysis.covariance().diagonal().minCoeff(), 0.0);
-  EXPECT_TRUE(analysis.weakDirections().empty());
+  EXPECT_GT(analysis.covariance(1.0).diagonal().minCoeff(), 0.0);
+  EXPECT_TRUE(analysis.weakDirections(0.0).empty());
 }
 
 TEST_F(InformationAnalysisTest, NoiseAlongWeakDirectionsIsNotFollowed)
@@ -133,13 +134,13 @@ TEST_F(InformationAnalysisTest, NoiseAlongWeakDirectionsIsNotFollowed)
   Correspondences correspondences = floorOf(0.1);
   for (auto& c : correspondences.planes) {
     c.factor.center = c.point + Eigen::Vector3d(0.0, 0.0, 0.1 + uniform(random, 0.05));
-    c.factor.normal = Eigen::Vector3d(uniform(random, 0.005), uniform(random, 0.005), 1.0).normalized();
+    c.factor.direction = Eigen::Vector3d(uniform(random, 0.005), uniform(random, 0.005), 1.0).normalized();
   }
   parameters_.kernel = RobustKernel::none;
   const NormalEquations equations = equationsOf(correspondences);
   const Vector6 followed = InformationAnalysis(equations, 0.0).step();
   const InformationAnalysis analysis(equations, 1e-4);
-  EXPECT_EQ(analysis.weakDirections().size(), 3U);
+  EXPECT_EQ(analysis.weakDirections(1e-4).size(), 3U);
   EXPECT_GT(followed.head<2>().norm(), 0.05);
   EXPECT_LT(analysis.step().head<2>().norm(), 0.005);
   EXPECT_NEAR(analysis.step()[2], 0.1, 0.01);

@@ -50,7 +50,7 @@ TEST(PlaneFit, FindsAPlane)
   }
   const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
   ASSERT_TRUE(plane);
-  EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-6);
+  EXPECT_NEAR(std::abs(plane->direction.dot(normal)), 1.0, 1e-6);
   EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
 }
 
@@ -85,7 +85,7 @@ TEST(PlaneFit, IsThatOfTheEigenvectors)
       continue;
     }
     ++planes;
-    EXPECT_NEAR(std::abs(plane->normal.dot(solver.eigenvectors().col(0))), 1.0, 1e-9);
+    EXPECT_NEAR(std::abs(plane->direction.dot(solver.eigenvectors().col(0))), 1.0, 1e-9);
     EXPECT_LT((plane->center - mean).norm(), 1e-12);
     double extrapolation = 1.0;
     Eigen::Matrix3d tilt = Eigen::Matrix3d::Zero();
@@ -133,7 +133,7 @@ TEST(PlaneFit, ItsTiltIsThatOfNormalsFittedToNoise)
     }
     const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
     if (plane) {
-      const Eigen::Vector3d normal = plane->normal / plane->normal.z();
+      const Eigen::Vector3d normal = plane->direction / plane->direction.z();
       seen += normal.head<2>().cwiseAbs2();
       told += plane->tilt[0].head<2>().cwiseAbs2() + plane->tilt[1].head<2>().cwiseAbs2();
     }

@@ -21,18 +21,18 @@ struct Scan {
   Scan(const SweepTrajectory& trajectory, double noise, std::size_t edge_count = 300, std::size_t plane_count = 700)
   {
     std::mt19937 random(1);
-    const auto fill = [&](std::vector<Feature>& features, auto& correspondences, std::size_t count) {
+    const auto fill = [&](FeatureKind kind, std::vector<Feature>& features, auto& correspondences, std::size_t count) {
       correspondences.resize(count);
       for (auto& c : correspondences) {
         const Eigen::Vector3f point = randomVector(random, 15.0).cast<float>();
         features.push_back({point.x(), point.y(), point.z(), static_cast<float>(0.5 + uniform(random, 0.5))});
         c.weight = 1.0 + uniform(random, 0.5);
-        c.factor = {trajectory.at(point.cast<double>(), features.back().time) + randomVector(random, noise),
+        c.factor = {kind, trajectory.at(point.cast<double>(), features.back().time) + randomVector(random, noise),
                     randomVector(random, 1.0).normalized()};
       }
     };
-    fill(edges, factors.edges, edge_count);
-    fill(planes, factors.planes, plane_count);
+    fill(FeatureKind::edge, edges, factors.edges, edge_count);
+    fill(FeatureKind::plane, planes, factors.planes, plane_count);
   }
 
   /// With the points where a trajectory puts them.
@@ -184,7 +184,7 @@ TEST_F(NormalEquationsTest, CorrespondencesWithoutWeightDoNotCount)
   const NormalEquations before = equationsOf(correspondences);
   correspondences.edges.emplace_back();
   correspondences.edges.back().point = Eigen::Vector3d(1.0, 2.0, 3.0);
-  correspondences.edges.back().factor = {Eigen::Vector3d(9.0, 9.0, 9.0), Eigen::Vector3d::UnitX()};
+  correspondences.edges.back().factor = {FeatureKind::edge, Eigen::Vector3d(9.0, 9.0, 9.0), Eigen::Vector3d::UnitX()};
   const NormalEquations after = equationsOf(correspondences);
   EXPECT_EQ(before.edges, 300);
   EXPECT_EQ(after.edges, 300);
@@ -246,8 +246,8 @@ TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
   parameters_.kernel_scale = 0.01;
   Correspondences correspondences;
   for (const double residual : {0.9, 0.01, 0.02, -0.8, 0.1, 0.7, -0.03}) {
-    Correspondence<PlaneFactor> c;
-    c.factor = {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
+    Correspondence c;
+    c.factor = {FeatureKind::plane, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
     c.point = Eigen::Vector3d(3.0, 4.0, residual);
     c.weight = 1.0;
     correspondences.planes.push_back(c);
@@ -261,10 +261,11 @@ TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)
   const NormalEquations equations = equationsAt(trajectory_);
   const InformationAnalysis analysis(equations, 1e-4);
   const Eigen::Matrix<double, 6, 6> inverse = Eigen::Matrix<double, 6, 6>(equations.information).inverse();
-  const Eigen::Matrix<double, 6, 6> expected = analysis.poseVariance() * inverse;
-  EXPECT_LT((analysis.covariance() - expected).norm(), 1e-9 * expected.norm());
-  EXPECT_NEAR(analysis.poseVariance() / (analysis.residualVariance() * analysis.meanWeight()), 7.0, 1e-9);
-  EXPECT_TRUE(analysis.weakDirections().empty());
+  const double variance = featureVariance(equations);
+  const Eigen::Matrix<double, 6, 6> expected = variance * inverse;
+  EXPECT_LT((analysis.covariance(variance) - expected).norm(), 1e-9 * expected.norm());
+  EXPECT_NEAR(variance / (equations.residualVariance() * equations.given_weight / equations.count()), 7.0, 1e-9);
+  EXPECT_TRUE(analysis.weakDirections(1e-4).empty());
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Planes weighed by how well the map's points lie on them.
-#include "registration/scatter_weights.h"
+#include "registration/weights.h"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@ namespace pcl_floam::test {
 namespace {
 
 /// Planes of given variances, all linked, with weight 2.
-std::vector<Correspondence<PlaneFactor>> planesOf(const std::vector<double>& variances)
+std::vector<Correspondence> planesOf(const std::vector<double>& variances)
 {
-  std::vector<Correspondence<PlaneFactor>> planes(variances.size());
+  std::vector<Correspondence> planes(variances.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    planes[i].variance = variances[i];
+    planes[i].factor.variance = variances[i];
     planes[i].weight = 2.0;
   }
   return planes;
