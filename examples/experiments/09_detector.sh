@@ -107,7 +107,7 @@ def verdict(name, value, asked, is_least):
 
 
 def draw_characteristic(runs):
-    explained, told = ([[sign * value for run in runs for value in run.figures[f"{figure}_of_{which}"]]
+    explained, told = ([[sign * value for run in runs for value in run.figures[f"{figure}_of_{which}"] or []]
                         for which in ("wrong", "right")] for figure, sign in (("explained", 1.0), ("told", -1.0)))
     right = total(runs, "judged") - total(runs, "wrong")
     said = (share(total(runs, "right_doubted") + total(runs, "right_lost"), right),

@@ -60,10 +60,9 @@ def simulated_runs():
 
 
 def row(name, command, runs):
-    runs = [run for run in runs if run.figures["ate"] is not None]
-    scans = sum(run.figures["scans"] for run in runs)
-    share = 100.0 * sum(run.figures["doubted"] for run in runs) / scans if scans else None
-    listed = lambda key, digits, factor=1.0: " ".join(number(run.figures[key], digits, factor) for run in runs) or "–"
+    scans = sum(run.figures["scans"] or 0 for run in runs)
+    share = 100.0 * sum(run.figures["doubted"] or 0 for run in runs) / scans if scans else None
+    listed = lambda key, digits, factor=1.0: " ".join(number(run.figures[key], digits, factor) for run in runs)
     return [name, f"`{command}`", listed("t_rel", 2), listed("ate", 1, 100.0), number(share, 0)]
 
 

@@ -163,12 +163,16 @@ private:
 
   void tell(std::size_t scan, const OdometryReport& report)
   {
+    if (report.state == TrackingState::tracked) {
+      doubt_.clear();
+    }
     const std::string file = (scans_.path(scan).parent_path() / scans_.name(scan)).string();
     if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
       progress_.message(file + ": not tracked: " + report.reason);
     } else if (report.state == TrackingState::doubtful) {
-      if (!isUndecided(report) && report.reason != result_.last_read.reason) {
+      if (!isUndecided(report) && report.reason != doubt_) {  // once for scans in a row
         progress_.message(file + ": doubtful: " + report.reason);
+        doubt_ = report.reason;
       }
     } else if (!report.corrected_poses.empty() && !report.reason.empty()) {
       progress_.message(file + ": only now it is plain how the sensor moved: " +
@@ -195,6 +199,7 @@ private:
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
   std::size_t undecided_ = 0;
+  std::string doubt_;     ///< that was told of
   std::size_t late_ = 0;  ///< scans whose time is not after the one before
   std::optional<double> stamp_;
   std::optional<double> last_stamp_;

@@ -48,7 +48,7 @@ struct FeatureOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return first ? failToStart() : predictOnly(toString(report.registration.termination));
     }
-    noteTold(report.registration.covariance);
+    noteTold(report.registration.covariance, std::nullopt);  // a hint moves the guess alone
     const Eigen::Matrix3d open = told_motion.open(periods);
     updateMotion(predicted);
     updateMap(cloud);
@@ -85,6 +85,7 @@ struct FeatureOdometry : OdometryRun {
   void beginNear(const SE3& world_T_sensor)
   {
     motion = MotionEstimate(world_T_sensor);
+    told_motion.forget();
     pose = {world_T_sensor};
     periods = periods_error = 0.0;
     is_placed = false;
@@ -252,6 +253,7 @@ struct FeatureOdometry : OdometryRun {
   void predictOnly(const char* reason)
   {
     report.reason = reason;
+    report.told_deviation = ToldMotion::kNothing;
     finish(started ? TrackingState::predicted : TrackingState::not_started);
   }
 

@@ -63,10 +63,11 @@ struct OdometryRun {
     hint.reach();
   }
 
-  /// \param told covariance of the pose as the scan alone tells it
-  void noteTold(const Matrix6& told)
+  /// \param told       covariance of the pose as the scan alone tells it
+  /// \param pose_takes a hint: what it tells counts as far as the pose goes by it
+  void noteTold(const Matrix6& told, const std::optional<MotionHint>& pose_takes)
   {
-    told_motion.take(toldPosition(told, report.registration.target_T_source.rotation, hint.sinceLast()));
+    told_motion.take(toldPosition(told, report.registration.target_T_source.rotation, pose_takes), periods);
     report.told_deviation = told_motion.deviation();
   }
 
@@ -81,11 +82,7 @@ struct OdometryRun {
   }
 
   /// Periods since the last scan that a velocity holds for: it is not known for ever.
-  [[nodiscard]] double periodsKnown() const
-  {
-    constexpr double kLongest = 10.0;
-    return std::min(periods, kLongest);
-  }
+  [[nodiscard]] double periodsKnown() const { return std::min(periods, kLongestKnown); }
 };
 
 }  // namespace pcl_floam

@@ -129,6 +129,7 @@ struct SurfaceOdometry : OdometryRun {
     constexpr double kShortest = 1e-3;  // periods: stamps that do not advance
     const bool may_correct = tracker.mayCorrect() || !tracker.isTracking();
     sweep.periods = std::max(periods, kShortest);
+    const bool was_tracking = tracker.isTracking();
     const Tracker::Outcome outcome = registerSweep();
     report.registration = outcome.registration.report;
     report.explained = outcome.registration.explained();
@@ -136,7 +137,8 @@ struct SurfaceOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return;
     }
-    noteTold(outcome.registration.told);
+    noteTold(outcome.registration.told,
+             was_tracking ? sweep.hint : std::nullopt);  // the first motion is only sought by it
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
       first_scans.push_back(scan.features);
@@ -217,6 +219,7 @@ struct SurfaceOdometry : OdometryRun {
   void predictOnly(const char* reason)
   {
     report.reason = reason;
+    report.told_deviation = ToldMotion::kNothing;
     const bool started = tracker.hasBegun() || map_building.hasPrior();
     first_poses.miss();
     finish(started ? TrackingState::predicted : TrackingState::not_started);
@@ -280,6 +283,7 @@ struct SurfaceOdometry : OdometryRun {
       return;
     }
     tracker.place(world_T_track.inverse() * world_T_sensor);
+    told_motion.forget();
     first_poses.close();
     first_scans.clear();
     periods = periods_error = 0.0;

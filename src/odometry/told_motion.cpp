@@ -31,8 +31,15 @@ Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotatio
   return covariance.topLeftCorner<3, 3>();
 }
 
-void ToldMotion::take(const Eigen::Matrix3d& position)
+void ToldMotion::take(const Eigen::Matrix3d& position, double periods)
 {
+  constexpr double kNextScan = 1.5;  // periods
+  if (periods > kNextScan) {
+    last_ = 0.0;
+  }
+  if (periods > kLongestKnown) {
+    is_told_ = false;
+  }
   constexpr double kLeast = 1e-6;  // m: all is locked
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(position);
   directions_.setZero();
@@ -41,7 +48,7 @@ void ToldMotion::take(const Eigen::Matrix3d& position)
       directions_ += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
     }
   }
-  deviation_ = std::sqrt(std::max(kLeast * kLeast, solver.eigenvalues()[2]));
+  deviation_ = std::sqrt(std::max(solver.eigenvalues()[2], kLeast * kLeast));
   const double information = 1.0 / (deviation_ * deviation_);
   is_told_ = deviation_ <= kOpen && (is_told_ || information + last_ >= 1.0 / (kTold * kTold));
   last_ = information;

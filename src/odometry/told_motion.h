@@ -15,20 +15,30 @@ namespace pcl_floam {
 [[nodiscard]] Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotation,
                                            const std::optional<MotionHint>& hint);
 
+/// Periods that a velocity is known for.
+inline constexpr double kLongestKnown = 10.0;
+
 /// A motion that is wrong confirms itself as long as nothing speaks against it: it is expected, and the next pose is
 /// found near to where it leads. So no pose is relied on before scans have told of every direction by themselves. What
 /// they have told once lasts, since a velocity does, until they leave a direction open.
 class ToldMotion {
 public:
+  static constexpr double kNothing = 1000.0;  ///< m: nothing is told
+
   /// \param position of the next scan, \ref toldPosition
-  void take(const Eigen::Matrix3d& position);
+  /// \param periods  since the scan before: no velocity is known for ever
+  void take(const Eigen::Matrix3d& position, double periods);
+
+  /// What a velocity was known from, as where a pose is given.
+  void forget() { *this = ToldMotion(); }
 
   [[nodiscard]] bool isTold() const { return is_told_; }
 
   /// Of the last scan's position along the direction of which it tells least, one standard deviation, m.
   [[nodiscard]] double deviation() const { return deviation_; }
 
-  /// Covariance of the motion over so many periods along what the scans leave open, m^2; zero if they tell all.
+  /// Covariance of the motion over so many periods, from the scan before, along what the scans leave open, m^2; zero if
+  /// they tell all.
   [[nodiscard]] Eigen::Matrix3d open(double periods) const;
 
 private:

@@ -143,6 +143,7 @@ private:
   {
     Square6 known = information / kResidualsBesideMotion;
     known.diagonal().array() += kNothingKnown;
+    holdLocked(known);
     return withoutLocked(Square6(known.inverse()));
   }
 
@@ -150,6 +151,19 @@ private:
   {
     const Equations equations = equationsOf(sums);
     return withoutLocked(Square12(equations.information.inverse()));
+  }
+
+  /// As if they were known.
+  template <typename Information>
+  void holdLocked(Information& information) const
+  {
+    for (Eigen::Index i = 0; i < information.rows(); ++i) {
+      if (isLocked(static_cast<int>(i))) {
+        information.row(i).setZero();
+        information.col(i).setZero();
+        information(i, i) = 1.0;
+      }
+    }
   }
 
   template <typename Covariance>
@@ -248,13 +262,9 @@ private:
     equations.gradient << strong_.transpose() * e.gradient, strong_.transpose() * e.twist_gradient;
     equations.gradient /= kResidualsBesideMotion;
     equations.gradient += prior_ * off;
+    holdLocked(equations.information);
     for (int i = 0; i < 12; ++i) {
-      if (isLocked(i)) {
-        equations.information.row(i).setZero();
-        equations.information.col(i).setZero();
-        equations.information(i, i) = 1.0;
-        equations.gradient[i] = 0.0;
-      }
+      equations.gradient[i] = isLocked(i) ? 0.0 : equations.gradient[i];
     }
     return equations;
   }

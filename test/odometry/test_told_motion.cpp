@@ -37,7 +37,7 @@ TEST(ToldMotion, IsToldAtOnceWhereAScanTellsOfAllDirections)
 {
   ToldMotion motion;
   EXPECT_FALSE(motion.isTold());
-  motion.take(position(kWell));
+  motion.take(position(kWell), 1.0);
   EXPECT_TRUE(motion.isTold());
   EXPECT_NEAR(motion.deviation(), kWell, 1e-12);
   EXPECT_TRUE(motion.open(1.0).isZero());
@@ -47,7 +47,7 @@ TEST(ToldMotion, IsNeverToldByScansThatTellLittleHoweverMany)
 {
   ToldMotion motion;
   for (int scan = 0; scan < 1000; ++scan) {
-    motion.take(position(kSoSo));
+    motion.take(position(kSoSo), 1.0);
     ASSERT_FALSE(motion.isTold()) << scan;
   }
 }
@@ -55,21 +55,52 @@ TEST(ToldMotion, IsNeverToldByScansThatTellLittleHoweverMany)
 TEST(ToldMotion, LastsUntilAScanLeavesADirectionOpen)
 {
   ToldMotion motion;
-  motion.take(position(kWell));
-  motion.take(position(kSoSo));
+  motion.take(position(kWell), 1.0);
+  motion.take(position(kSoSo), 1.0);
   EXPECT_TRUE(motion.isTold());
-  motion.take(position(kHardly));
+  motion.take(position(kHardly), 1.0);
   EXPECT_FALSE(motion.isTold());
-  motion.take(position(kSoSo));
+  motion.take(position(kSoSo), 1.0);
   EXPECT_FALSE(motion.isTold());
-  motion.take(position(kWell));
+  motion.take(position(kWell), 1.0);
   EXPECT_TRUE(motion.isTold());
+}
+
+TEST(ToldMotion, LastsOverAShortGapButNotOverALongOne)
+{
+  ToldMotion motion;
+  motion.take(position(kWell), 1.0);
+  motion.take(position(kSoSo), 3.0);
+  EXPECT_TRUE(motion.isTold());
+  motion.take(position(kSoSo), 2.0 * kLongestKnown);
+  EXPECT_FALSE(motion.isTold());
+}
+
+TEST(ToldMotion, TwoScansInARowTellTogether)
+{
+  constexpr double kHalf = 0.015;  // m
+  ToldMotion motion;
+  motion.take(position(kHalf), 1.0);
+  EXPECT_FALSE(motion.isTold());
+  motion.take(position(kHalf), 3.0);
+  EXPECT_FALSE(motion.isTold()) << "they are not in a row";
+  motion.take(position(kHalf), 1.0);
+  EXPECT_TRUE(motion.isTold());
+  motion.forget();
+  EXPECT_FALSE(motion.isTold());
+}
+
+TEST(ToldMotion, WhatIsNoNumberTellsNothing)
+{
+  ToldMotion motion;
+  motion.take(position(std::nan("")), 1.0);
+  EXPECT_FALSE(motion.isTold());
 }
 
 TEST(ToldMotion, AnySpeedCountsAlongWhatIsOpenAndOnlyThere)
 {
   ToldMotion motion;
-  motion.take(position(kHardly));
+  motion.take(position(kHardly), 1.0);
   const Eigen::Matrix3d once = motion.open(1.0);
   EXPECT_GT(std::sqrt(once(0, 0)), 1.0);
   EXPECT_NEAR(once(1, 1), 0.0, 1e-12);
@@ -82,7 +113,7 @@ TEST(ToldMotion, AHintTellsWhatTheScanLeavesOpen)
   const Eigen::Matrix3d both = toldPosition(told(kNothing), Eigen::Matrix3d::Identity(), hintOf(0.01));
   EXPECT_NEAR(std::sqrt(both(0, 0)), 0.01, 1e-5);
   ToldMotion motion;
-  motion.take(both);
+  motion.take(both, 1.0);
   EXPECT_TRUE(motion.isTold());
 }
 
@@ -106,7 +137,7 @@ TEST(ToldMotion, AHintIsInTheSensorsAxes)
 TEST(ToldMotion, NothingHasToTellOfWhatIsLocked)
 {
   ToldMotion motion;
-  motion.take(position(0.0));
+  motion.take(position(0.0), 1.0);
   EXPECT_TRUE(motion.isTold());
   EXPECT_TRUE(std::isfinite(motion.deviation()));
 }
