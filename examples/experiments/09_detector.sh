@@ -3,6 +3,7 @@
 # how many scans whose motion is wrong are not called good, and how many right ones are doubted.
 #
 #   bash examples/experiments/09_detector.sh [--quick] [--data DIR] [--output DIR] [--instant end|middle] [--family tune]
+#                                            [--engine features]
 #
 # A scan is called good if its state is tracked or initialized and it is not provisional; called lost if it is predicted
 # or not started; else doubtful. It is wrong if its motion since the anchor is off by more than 0.5 m + 1 % of the true
@@ -65,6 +66,7 @@ TUNE_BELOW = 300  # by so much less are the seeds of the family `tune`
 
 def arguments(parser):
     parser.add_argument("--family", default="report", choices=["report", "tune"], help="of worlds")
+    parser.add_argument("--engine", default="surfaces", choices=["surfaces", "features"], help="of the odometry")
     parser.add_argument("--instant", default="end", choices=["end", "middle"], help="of the sweep: which pose is judged")
 
 
@@ -128,7 +130,9 @@ data = simulate(options, all_plans)
 for d in data:
     if options.arguments.instant == "middle" or "--field-of-view" in d.description["options"]:
         d.judge_at_the_middle()
-runs = execute(options, [Run(d, options.arguments.instant, judge=judge_run) for d in data])
+engine, label = options.arguments.engine, options.arguments.instant
+extra, label = ([], label) if engine == "surfaces" else (["--engine", engine], f"{label}-{engine}")
+runs = execute(options, [Run(d, label, extra, judge=judge_run) for d in data])
 kinds = collections.defaultdict(list)
 for group, run in zip(groups, runs):
     if run.figures["judged"] is not None:

@@ -33,9 +33,8 @@ std::string timingColumns()
 }
 
 constexpr const char* kScanColumns =
-    "scan,state,provisional,explained,told_deviation_m,weak_directions,covariance_xx_m2,covariance_xy_m2,covariance_xz_"
-    "m2,"
-    "covariance_yy_m2,covariance_yz_m2,covariance_zz_m2,reason";
+    "scan,state,provisional,explained,told_deviation_m,weak_directions,covariance_xx_m2,covariance_xy_m2,"
+    "covariance_xz_m2,covariance_yy_m2,covariance_yz_m2,covariance_zz_m2,reason";
 
 /// As CSV has it: quotation marks within are doubled.
 std::string quoted(const std::string& text)

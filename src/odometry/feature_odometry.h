@@ -49,12 +49,10 @@ struct FeatureOdometry : OdometryRun {
       return first ? failToStart() : predictOnly(toString(report.registration.termination));
     }
     noteTold(report.registration.covariance, std::nullopt);  // a hint moves the guess alone
-    const Eigen::Matrix3d open = told_motion.open(periods);
     updateMotion(predicted);
     updateMap(cloud);
     report.milliseconds.map += watch.lap();
     finish(toldState());
-    report.covariance.topLeftCorner<3, 3>() += open;
   }
 
   void miss(std::optional<double> stamp)
@@ -267,6 +265,8 @@ struct FeatureOdometry : OdometryRun {
       const MotionEstimate predicted = predictMotion(periodsKnown());
       report.world_T_sensor = SweepPose{predicted.pose(), sweep_fraction * predicted.velocity()}.at(instant);
       report.covariance = predicted.poseCovariance();
+    } else if (state == TrackingState::doubtful) {
+      report.covariance.topLeftCorner<3, 3>() += told_motion.open();
     }
     report.milliseconds.total = watch.total();
   }

@@ -242,7 +242,7 @@ struct SurfaceOdometry : OdometryRun {
     } else if (state == TrackingState::tracked || state == TrackingState::doubtful) {
       report.covariance = report.registration.covariance;
       const Eigen::Matrix3d& turn = world_T_track.rotation;
-      report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open(sweep.periods) * turn.transpose();
+      report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open() * turn.transpose();
     }
     first_poses.give(report.world_T_sensor);
     if (tracker.isTracking() && !tracker.mayCorrect()) {

@@ -12,8 +12,11 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr double kTold = 0.012;  // m, by two scans together
-constexpr double kOpen = 0.05;   // m, by one: half a metre in the ten scans of a second
+/// What two scans together have to tell of the position, one standard deviation in m: more than a single return would
+/// (2 cm), as the errors that all of a laser's returns share can look like as much about a motion that is wrong.
+constexpr double kTold = 0.012;
+/// One alone, for what was told before to last: half a metre in the ten scans of a second.
+constexpr double kOpen = 0.05;
 
 }  // namespace
 
@@ -34,31 +37,21 @@ Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotatio
 void ToldMotion::take(const Eigen::Matrix3d& position, double periods)
 {
   constexpr double kNextScan = 1.5;  // periods
-  if (periods > kNextScan) {
-    last_ = 0.0;
-  }
-  if (periods > kLongestKnown) {
-    is_told_ = false;
-  }
-  constexpr double kLeast = 1e-6;  // m: all is locked
+  constexpr double kLeast = 1e-6;    // m: all is locked
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(position);
-  directions_.setZero();
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    if (solver.eigenvalues()[i] > kTold * kTold) {
-      directions_ += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
-    }
-  }
   deviation_ = std::sqrt(std::max(solver.eigenvalues()[2], kLeast * kLeast));
   const double information = 1.0 / (deviation_ * deviation_);
-  is_told_ = deviation_ <= kOpen && (is_told_ || information + last_ >= 1.0 / (kTold * kTold));
+  const double together = information + (periods < kNextScan ? last_ : 0.0);
+  const bool is_known = is_told_ && periods <= kLongestKnown;
+  is_told_ = deviation_ <= kOpen && (is_known || together >= 1.0 / (kTold * kTold));
   last_ = information;
-}
-
-/// Any speed may be as likely as any other.
-Eigen::Matrix3d ToldMotion::open(double periods) const
-{
-  const double farthest = kFastestMotion * periods;
-  return is_told_ ? Eigen::Matrix3d(Eigen::Matrix3d::Zero()) : Eigen::Matrix3d(farthest * farthest / 3.0 * directions_);
+  open_.setZero();
+  for (Eigen::Index i = 0; i < 3 && !is_told_; ++i) {
+    if (solver.eigenvalues()[i] > kTold * kTold) {
+      const Eigen::Vector3d farthest = kFastestMotion * periods * solver.eigenvectors().col(i);
+      open_ += farthest * farthest.transpose() / 3.0;
+    }
+  }
 }
 
 }  // namespace pcl_floam

@@ -29,7 +29,7 @@ public:
   /// \param periods  since the scan before: no velocity is known for ever
   void take(const Eigen::Matrix3d& position, double periods);
 
-  /// What a velocity was known from, as where a pose is given.
+  /// As where a pose is given, and nothing of the velocity.
   void forget() { *this = ToldMotion(); }
 
   [[nodiscard]] bool isTold() const { return is_told_; }
@@ -37,12 +37,12 @@ public:
   /// Of the last scan's position along the direction of which it tells least, one standard deviation, m.
   [[nodiscard]] double deviation() const { return deviation_; }
 
-  /// Covariance of the motion over so many periods, from the scan before, along what the scans leave open, m^2; zero if
-  /// they tell all.
-  [[nodiscard]] Eigen::Matrix3d open(double periods) const;
+  /// Covariance of the motion from the scan before to the last one along what they leave open, where any speed may be
+  /// as likely as any other, m^2; zero if they tell all.
+  [[nodiscard]] const Eigen::Matrix3d& open() const { return open_; }
 
 private:
-  Eigen::Matrix3d directions_ = Eigen::Matrix3d::Zero();  // that the last scan leaves open: sum of u u^T
+  Eigen::Matrix3d open_ = Eigen::Matrix3d::Zero();
   double deviation_ = 0.0;
   double last_ = 0.0;  // information of the scan before, 1/m^2
   bool is_told_ = false;

@@ -64,7 +64,7 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, ResidualRows& ro
   const RobustKernel kernel = robust_ ? run_.kernel : RobustKernel::none;
   const double robust = robustWeight(kernel, squared, scale_);
   const Eigen::Vector3d arm = pose.rotation * source_.tree.points()[i].cast<double>();
-  rows.add(r.m.cast<double>(), r.difference.cast<double>(), arm, robust);
+  rows.add(r.m.cast<double>(), r.difference.cast<double>(), arm, robust, 0.0);
   const double weight = robust * static_cast<double>(r.m.trace());
   sums.cost += 0.5 * robustCost(kernel, squared, scale_);
   sums.weighted_squares += robust * squared;

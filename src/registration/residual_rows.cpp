@@ -31,38 +31,14 @@ struct ThreeSums {
   double of[3];
 };
 
-/// Of a b w and a c w for a weight. \param n a multiple of the lanes
-PCL_FLOAM_MULTI_VERSION
-void weightedProducts(const double* a, const double* b, const double* c, const double* w, std::size_t n, double& with_b,
-                      double& with_c)
+/// Of a b w and a c w for each of some weights. \param n a multiple of the lanes
+template <std::size_t weights>
+__attribute__((always_inline)) inline void addProducts(const double* a, const double* b, const double* c,
+                                                       const std::array<const double*, 3>& w, std::size_t n,
+                                                       ThreeSums& with_b, ThreeSums& with_c)
 {
-  Lanes sum_b = {};
-  Lanes sum_c = {};
-  for (std::size_t i = 0; i < n; i += kLanes) {
-    Lanes left;
-    Lanes weight;
-    Lanes right_b;
-    Lanes right_c;
-    load(a + i, left);
-    load(w + i, weight);
-    load(b + i, right_b);
-    load(c + i, right_c);
-    right_b *= left;
-    right_c *= left;
-    sum_b += weight * right_b;
-    sum_c += weight * right_c;
-  }
-  addUp(sum_b, with_b);
-  addUp(sum_c, with_c);
-}
-
-/// Of a b w and a c w for each of three weights. \param n a multiple of the lanes
-PCL_FLOAM_MULTI_VERSION
-void weightedProducts(const double* a, const double* b, const double* c, const std::array<const double*, 3>& w,
-                      std::size_t n, ThreeSums& with_b, ThreeSums& with_c)
-{
-  Lanes sums_b[3] = {};
-  Lanes sums_c[3] = {};
+  Lanes sums_b[weights] = {};
+  Lanes sums_c[weights] = {};
   for (std::size_t i = 0; i < n; i += kLanes) {
     Lanes left;
     Lanes right_b;
@@ -72,17 +48,32 @@ void weightedProducts(const double* a, const double* b, const double* c, const s
     load(c + i, right_c);
     right_b *= left;
     right_c *= left;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < weights; ++k) {
       Lanes weight;
       load(w[k] + i, weight);
       sums_b[k] += weight * right_b;
       sums_c[k] += weight * right_c;
     }
   }
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < weights; ++k) {
     addUp(sums_b[k], with_b.of[k]);
     addUp(sums_c[k], with_c.of[k]);
   }
+}
+
+PCL_FLOAM_MULTI_VERSION
+void addTimedProducts(const double* a, const double* b, const double* c, const std::array<const double*, 3>& w,
+                      std::size_t n, ThreeSums& with_b, ThreeSums& with_c)
+{
+  addProducts<3>(a, b, c, w, n, with_b, with_c);
+}
+
+/// Where all times are that of the pose, their weights are zero.
+PCL_FLOAM_MULTI_VERSION
+void addUntimedProducts(const double* a, const double* b, const double* c, const std::array<const double*, 3>& w,
+                        std::size_t n, ThreeSums& with_b, ThreeSums& with_c)
+{
+  addProducts<1>(a, b, c, w, n, with_b, with_c);
 }
 
 }  // namespace
@@ -105,15 +96,16 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
 
 /// M = sum d u u^T (LDL^T).
 void ResidualRows::add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm,
-                       double weight)
+                       double weight, double since_middle)
 {
+  constexpr double kNotFelt = 1e-6;  // of a residual
   Eigen::Matrix3d rest = m;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double d = rest(i, i);
-    if (d > 0.0) {
+    if (d > kNotFelt) {
       const Eigen::Vector3d u = rest.col(i) / d;
       rest -= d * u * u.transpose();
-      add(u, arm, u.dot(difference), d * weight, 0.0);
+      add(u, arm, u.dot(difference), d * weight, since_middle);
     }
   }
 }
@@ -125,15 +117,11 @@ void ResidualRows::addTo(NormalEquations& equations)
   }
   const std::array<const double*, 3> weights = {weight_[0].data(), weight_[1].data(), weight_[2].data()};
   std::array<ThreeSums, kColumns + 1> sums{};
+  const auto addAll = is_timed_ ? addTimedProducts : addUntimedProducts;
   for (std::size_t i = 0; i < kResidual; ++i) {
     for (std::size_t j = i; j < kColumns; j += 2) {
       const double* next = column_[std::min(j + 1, kResidual)].data();
-      if (is_timed_) {
-        weightedProducts(column_[i].data(), column_[j].data(), next, weights, size_, sums[j], sums[j + 1]);
-      } else {
-        weightedProducts(column_[i].data(), column_[j].data(), next, weights[0], size_, sums[j].of[0],
-                         sums[j + 1].of[0]);
-      }
+      addAll(column_[i].data(), column_[j].data(), next, weights, size_, sums[j], sums[j + 1]);
     }
     const auto row = static_cast<Eigen::Index>(i);
     for (std::size_t j = i; j < kResidual; ++j) {

@@ -20,8 +20,9 @@ public:
            double since_middle);
 
   /// The three residuals that a difference makes whose directions count differently: its square is d^T M d.
-  /// \param m symmetric, positive definite
-  void add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm, double weight);
+  /// \param m symmetric, positive semi-definite: how much a residual along each direction counts, about one at most
+  void add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm, double weight,
+           double since_middle);
 
   /// H, b and what couples pose and velocity in them (Eq. 10), bit-identical for every processor.
   void addTo(NormalEquations& equations);

@@ -175,25 +175,16 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   ++sums.lines;
 }
 
-/// The distance to the nearest point, as far as it is felt: in three directions u of felt = sum d u u^T (LDL^T).
+/// The distance to the nearest point, as far as it is felt.
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
-  constexpr double kNotFelt = 1e-6;
   const Eigen::Vector3d r = p.place - near.center;
   const double length = r.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
   const double told = open.dot(near.felt * open);
   const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, told, sums);
   ++sums.points;
-  Eigen::Matrix3d rest = near.felt;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double d = rest(i, i);
-    if (d > kNotFelt) {
-      const Eigen::Vector3d u = rest.col(i) / d;
-      rest -= d * u * u.transpose();
-      rows.add(u, p.arm, u.dot(r), d * w, p.since_middle);
-    }
-  }
+  rows.add(near.felt, r, p.arm, w, p.since_middle);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.

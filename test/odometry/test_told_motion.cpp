@@ -40,7 +40,7 @@ TEST(ToldMotion, IsToldAtOnceWhereAScanTellsOfAllDirections)
   motion.take(position(kWell), 1.0);
   EXPECT_TRUE(motion.isTold());
   EXPECT_NEAR(motion.deviation(), kWell, 1e-12);
-  EXPECT_TRUE(motion.open(1.0).isZero());
+  EXPECT_TRUE(motion.open().isZero());
 }
 
 TEST(ToldMotion, IsNeverToldByScansThatTellLittleHoweverMany)
@@ -101,11 +101,12 @@ TEST(ToldMotion, AnySpeedCountsAlongWhatIsOpenAndOnlyThere)
 {
   ToldMotion motion;
   motion.take(position(kHardly), 1.0);
-  const Eigen::Matrix3d once = motion.open(1.0);
+  const Eigen::Matrix3d once = motion.open();
   EXPECT_GT(std::sqrt(once(0, 0)), 1.0);
   EXPECT_NEAR(once(1, 1), 0.0, 1e-12);
   EXPECT_NEAR(once(2, 2), 0.0, 1e-12);
-  EXPECT_TRUE(motion.open(3.0).isApprox(9.0 * once));
+  motion.take(position(kHardly), 3.0);
+  EXPECT_TRUE(motion.open().isApprox(9.0 * once));
 }
 
 TEST(ToldMotion, AHintTellsWhatTheScanLeavesOpen)
