@@ -5,18 +5,19 @@
 #include "map/surface_fit.h"
 #include "map/voxel_cells.h"
 
-#include <pcl_floam/map/surface.h>
+#include <pcl_floam/map/surface_map.h>
 
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 namespace pcl_floam {
 
 /// Cells of sides v, 2v, 4v, 8v and 16v, found by a hash of 64 bits: one lookup for the finest one around a place,
 /// whose parents follow from it. Each keeps the sums of its points and which lasers they came from. What a lookup reads
 /// lies in one cache line, all else beside it.
-class VoxelPyramid : public SurfaceSearch {
+class VoxelPyramid : public SurfaceMap {
 public:
   static constexpr int kLevels = VoxelCells::kLevels;
   static constexpr std::size_t kPointsPerLeaf = VoxelCells::kPointsPerLeaf;
@@ -28,12 +29,17 @@ public:
   [[nodiscard]] std::size_t size() const { return points_; }
   [[nodiscard]] std::size_t cells() const { return cells_.used(); }
 
-  /// What comes in from now on is of another keyframe.
-  void beginKeyframe() { ++keyframe_; }
+  [[nodiscard]] std::unique_ptr<SurfaceMap> makeEmpty(double side) const override
+  {
+    return std::make_unique<VoxelPyramid>(side, shapes_);
+  }
+  [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<VoxelPyramid>(*this); }
+
+  void beginKeyframe() override { ++keyframe_; }
 
   /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
   bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
-  void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count);
+  void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override;
 
   [[nodiscard]] bool empty() const override { return points_ == 0; }
   void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
@@ -43,7 +49,7 @@ public:
   [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place, std::uint32_t laser) const;
 
   /// Drops the blocks whose centres are farther from \p center than \p radius.
-  void crop(const Eigen::Vector3d& center, double radius);
+  void crop(const Eigen::Vector3d& center, double radius) override;
 
   void clear();
 

@@ -11,13 +11,14 @@ Sweep backwards(const std::vector<Sweep>& kept, std::size_t k)
   sweep.periods = k + 1 < kept.size() ? kept[k + 1].periods : 1.0;
   sweep.fraction = -sweep.fraction;
   sweep.hint.reset();
+  sweep.factors = {};
   return sweep;
 }
 
 }  // namespace
 
 std::vector<SE3> posesFoundBackwards(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
-                                     const TrackSettings& settings, double side)
+                                     const TrackSettings& settings)
 {
   constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
   const std::size_t n = kept.size();
@@ -29,8 +30,8 @@ std::vector<SE3> posesFoundBackwards(const std::vector<Sweep>& kept, const std::
     last.push_back(poses[k]);
     sweeps.push_back(backwards(kept, k));
   }
-  Track back(settings, side);
-  back.begin(sweeps, last, keyframesAmong(last, side));
+  Track back(settings);
+  back.begin(sweeps, last, keyframesAmong(last, settings));
   for (std::size_t k = n - kTrusted; k-- > 0;) {
     const Sweep sweep = backwards(kept, k);
     if (!back.step(sweep).report.hasConverged()) {

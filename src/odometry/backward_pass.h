@@ -12,9 +12,8 @@ namespace pcl_floam {
 /// from them.
 /// \param kept     four sweeps or more: the last four are where they were found
 /// \param forwards poses of the sweeps as they were found
-/// \param side     m, of the finest cells of the track's map
 /// \return poses seen from the first one; nothing if a sweep cannot be registered
 [[nodiscard]] std::vector<SE3> posesFoundBackwards(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
-                                                   const TrackSettings& settings, double side);
+                                                   const TrackSettings& settings);
 
 }  // namespace pcl_floam

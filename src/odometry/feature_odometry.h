@@ -23,7 +23,10 @@ struct FeatureOdometry : OdometryRun {
   /// Periods: what moves in less cannot be told from the poses' errors.
   static constexpr double kShortest = 0.5;
 
-  using OdometryRun::OdometryRun;
+  FeatureOdometry(const OdometryParameters& p, const OdometryComponents& c) : OdometryRun(p, c)
+  {
+    map_building.chooseKeyframesBy(c.is_keyframe);
+  }
 
   MotionEstimate motion;  ///< at the last scan that was registered
   SweepPose pose;         ///< of that scan
@@ -191,6 +194,7 @@ struct FeatureOdometry : OdometryRun {
     run.guess_uncertainty = far;
     run.threads = parameters.threads;
     run.sweep = sweepModel(predicted.velocity());
+    run.factors = components.factors;
     const KeyframeVoxelMap& map = map_building.map();
     report.registration = registerFeatures(
         scan.features, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, parameters.registration);

@@ -51,17 +51,17 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   thin.fraction = sweep.fraction;
   thin.is_direction_known = sweep.is_direction_known;
   thin.hint = sweep.hint;
+  thin.factors = sweep.factors;
   return thin;
 }
 
 /// Two sweeps, looked at from any guess.
 class TwoSweeps {
 public:
-  TwoSweeps(const Sweep& first, const Sweep& second, const TrackSettings& settings, double side)
+  TwoSweeps(const Sweep& first, const Sweep& second, const TrackSettings& settings)
       : settings_(settings),
-        side_(side),
-        first_(thinned(first, side, sampling_)),
-        second_(thinned(second, side, sampling_))
+        first_(thinned(first, settings.side, sampling_)),
+        second_(thinned(second, settings.side, sampling_))
   {
   }
 
@@ -71,7 +71,7 @@ public:
     std::vector<RegistrationReport> found(looks.size());
     std::vector<double> evidence(looks.size());
     eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
-      Track track(settings_, side_);
+      Track track(settings_);
       found[i] = track.findMotion(first_, second_, looks[i]).report;
       evidence[i] = track.evidence();
     });
@@ -85,7 +85,6 @@ public:
 
 private:
   const TrackSettings& settings_;
-  double side_;
   SpatialSampling sampling_;
   Sweep first_;
   Sweep second_;
@@ -132,11 +131,11 @@ std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
 
 }  // namespace
 
-FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings, double side)
+FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings)
 {
   constexpr double kFar = 2.0;  // m
   constexpr int kFarRounds = 5;
-  const TwoSweeps sweeps(first, second, settings, side);
+  const TwoSweeps sweeps(first, second, settings);
   std::vector<FirstMotion> motions;
   const Matrix6 information =
       sweeps.lookAt({{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}}, motions).information;

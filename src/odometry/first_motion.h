@@ -18,8 +18,6 @@ struct FirstMotions {
 
 /// Those that registrations of two thinned sweeps lead to: from rest, along the direction that this leaves open, and as
 /// it is told.
-/// \param side m, of the finest cells of a track's map
-[[nodiscard]] FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings,
-                                              double side);
+[[nodiscard]] FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings);
 
 }  // namespace pcl_floam

@@ -60,7 +60,8 @@ bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy)
   if (!prior_ && keyframes_ == 0) {
     return true;
   }
-  return prior_ != MapUse::frozen && policy.isKeyframe(world_T_keyframe_, world_T_sensor);
+  return prior_ != MapUse::frozen &&
+         (rule_ ? rule_(world_T_keyframe_, world_T_sensor) : policy.isKeyframe(world_T_keyframe_, world_T_sensor));
 }
 
 void MapBuilding::insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads)

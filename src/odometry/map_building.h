@@ -27,6 +27,9 @@ public:
   /// Goes on with a map that was made before, near a pose.
   void begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sensor);
 
+  /// In place of the parameters' policy, if it is not empty.
+  void chooseKeyframesBy(const KeyframeRule& rule) { rule_ = rule; }
+
   /// Takes in features as they were measured, if the sensor has moved far enough or there are none yet.
   /// \return whether it did
   bool add(const FeatureSet& measured, const SweepPose& world_T_sensor, const OdometryParameters& parameters);
@@ -41,6 +44,7 @@ private:
 
   KeyframeVoxelMap map_;
   std::optional<MapUse> prior_;
+  KeyframeRule rule_;
   SE3 world_T_keyframe_;
   int keyframes_ = 0;
 };

@@ -4,6 +4,7 @@
 
 #include <pcl_floam/odometry/odometry.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -53,8 +54,8 @@ void validate(const OdometryParameters& p)
 struct OdometryPipeline::Impl {
   using Engine = std::variant<FeatureOdometry, SurfaceOdometry>;
 
-  explicit Impl(const OdometryParameters& p)
-      : engine(p.engine == OdometryEngine::surfaces ? Engine(SurfaceOdometry(p)) : Engine(FeatureOdometry(p)))
+  Impl(const OdometryParameters& p, const OdometryComponents& c)
+      : engine(p.engine == OdometryEngine::surfaces ? Engine(SurfaceOdometry(p, c)) : Engine(FeatureOdometry(p, c)))
   {
   }
 
@@ -92,7 +93,7 @@ private:
 OdometryPipeline::OdometryPipeline(const OdometryParameters& parameters)
 {
   validate(parameters);
-  impl_ = std::make_unique<Impl>(parameters);
+  impl_ = std::make_unique<Impl>(parameters, OdometryComponents());
 }
 
 OdometryPipeline::OdometryPipeline(const OdometryPipeline& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
@@ -164,12 +165,28 @@ void OdometryPipeline::reset(const SE3& world_T_sensor)
   if (!world_T_sensor.isFinite()) {
     throw std::invalid_argument("the pose to begin with is not finite");
   }
-  const OdometryParameters given = parameters();
-  impl_ = std::make_unique<Impl>(given);
+  impl_ = std::make_unique<Impl>(OdometryParameters(parameters()), OdometryComponents(components()));
   impl_->visit([&](auto& odometry) {
     odometry.initial_pose = world_T_sensor;
     odometry.report.world_T_sensor = world_T_sensor;
   });
+}
+
+void OdometryPipeline::setComponents(const OdometryComponents& components)
+{
+  const auto isNull = [](const PoseFactor::ConstPtr& factor) { return factor == nullptr; };
+  if (std::any_of(components.factors.begin(), components.factors.end(), isNull)) {
+    throw std::invalid_argument("odometry: a factor is null");
+  }
+  if (parameters().engine == OdometryEngine::features && (components.map || components.select_points)) {
+    throw std::invalid_argument("odometry: the engine 'features' registers features with its own map");
+  }
+  impl_ = std::make_unique<Impl>(OdometryParameters(parameters()), components);
+}
+
+const OdometryComponents& OdometryPipeline::components() const
+{
+  return impl_->visit([](auto& odometry) -> const OdometryComponents& { return odometry.components; });
 }
 
 }  // namespace pcl_floam

@@ -19,9 +19,13 @@
 namespace pcl_floam {
 
 struct OdometryRun {
-  explicit OdometryRun(const OdometryParameters& p) : parameters(p), map_building(p), clock(p.scan_period) {}
+  OdometryRun(const OdometryParameters& p, const OdometryComponents& c)
+      : parameters(p), components(c), map_building(p), clock(p.scan_period)
+  {
+  }
 
   OdometryParameters parameters;
+  OdometryComponents components;
   MapBuilding map_building;
   ScanClock clock;
   SE3 initial_pose;  ///< of the first scan, at the instant of the parameters

@@ -17,8 +17,8 @@ namespace pcl_floam {
 /// Within the pipeline, poses are those of mid-sweep, seen from the first one. World poses of other instants are
 /// derived when they are given out.
 struct SurfaceOdometry : OdometryRun {
-  explicit SurfaceOdometry(const OdometryParameters& p)
-      : OdometryRun(p), tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads})
+  SurfaceOdometry(const OdometryParameters& p, const OdometryComponents& c)
+      : OdometryRun(p, c), tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads, c})
   {
   }
 
@@ -157,6 +157,8 @@ struct SurfaceOdometry : OdometryRun {
     sweep.fraction = scan.sweep_fraction;
     sweep.periods_error = periods_error;
     sweep.hint = hint.sinceLast();
+    const bool is_placed = tracker.isTracking() || map_building.hasPrior();
+    sweep.factors = {components.factors, is_placed ? world_T_track : initial_pose};
     return tracker.step(sweep);
   }
 

@@ -2,6 +2,8 @@
 /// One sweep as the odometry takes it.
 #pragma once
 
+#include "registration/pose_factors.h"
+
 #include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/motion/motion_hint.h>
 
@@ -21,6 +23,7 @@ struct Sweep {
   double fraction = 1.0;
   bool is_direction_known = true;  ///< of time: else it may run the other way, or the points may be of one instant
   std::optional<MotionHint> hint;  ///< of the motion since the sweep before
+  PoseFactors factors;             ///< what else is known of its pose
 };
 
 }  // namespace pcl_floam

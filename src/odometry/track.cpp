@@ -20,10 +20,13 @@ constexpr double kGivenTurned = 0.25;
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
 
-bool isFar(const SE3& keyframe, const SE3& pose, double side)
+bool becomesKeyframe(const SE3& last, const SE3& pose, const TrackSettings& settings)
 {
-  const SE3 moved = keyframe.inverse() * pose;
-  return moved.translation.norm() > kKeyframeSides * side || rotationAngle(moved.rotation) > kKeyframeTurn;
+  if (settings.components.is_keyframe) {
+    return settings.components.is_keyframe(last, pose);
+  }
+  const SE3 moved = last.inverse() * pose;
+  return moved.translation.norm() > kKeyframeSides * settings.side || rotationAngle(moved.rotation) > kKeyframeTurn;
 }
 
 Matrix6 covarianceOf(double translation, double rotation)
@@ -94,7 +97,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
   double far = look.far;
   for (int round = 0; round < look.rounds; ++round, far *= 0.5) {
     const Vector6 motion = log(first_T_second) / second.periods;
-    map_.emplace(side_, settings_.horizon);
+    map_.emplace(settings_);
     map_->insert(first, {SE3(), fractionOf(first) * motion});
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
@@ -120,7 +123,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 {
   SurfaceRegistration found = findMotion(first, second, look);
   if (found.report.hasConverged()) {
-    map_.emplace(side_, settings_.horizon);
+    map_.emplace(settings_);
     map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
     motion_.learnNothing();  // it was supposed, not predicted
     update(second, found);
@@ -129,12 +132,12 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   return found;
 }
 
-std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, double side)
+std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings)
 {
   std::vector<bool> keyframes;
   SE3 last;
   for (const SE3& pose : poses) {
-    keyframes.push_back(keyframes.empty() || isFar(last, pose, side));
+    keyframes.push_back(keyframes.empty() || becomesKeyframe(last, pose, settings));
     last = keyframes.back() ? pose : last;
   }
   return keyframes;
@@ -143,7 +146,7 @@ std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, double side)
 void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
 {
   constexpr double kKnown = 0.01;  // m and rad
-  map_.emplace(side_, settings_.horizon);
+  map_.emplace(settings_);
   Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);
@@ -313,8 +316,9 @@ SurfaceRegistration Track::registerFrom(const Sweep& sweep, const SE3& guess, do
 SurfaceProblem Track::problemFor(const Sweep& sweep) const
 {
   SurfaceProblem problem;
-  problem.scan = {&sweep.sample, &map_->space};
-  problem.edges = {&sweep.edges, &map_->edges};
+  problem.scan = {&sweep.sample, &map_->space()};
+  problem.edges = {&sweep.edges, &map_->edges()};
+  problem.factors = &sweep.factors;
   problem.prior.pose = motion_.pose();
   problem.prior.velocity = motion_.velocity();
   problem.prior.velocity_before = velocity_before_;
@@ -352,7 +356,7 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && isFar(keyframe_, pose_.middle, side_);
+  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }
 

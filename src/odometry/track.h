@@ -6,25 +6,14 @@
 #include "motion/sweep_pose.h"
 #include "odometry/sweep.h"
 #include "odometry/track_map.h"
+#include "odometry/track_settings.h"
 #include "registration/surface_registration.h"
-
-#include <pcl_floam/filters/motion_compensation_mode.h>
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace pcl_floam {
-
-struct TrackSettings {
-  CompensationMode compensation = CompensationMode::continuous;
-  DegreesOfFreedom locked = {};
-  double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
-  int threads = 1;
-  /// Of time in sweeps of which it is not known: 1 as their points have it, -1 against it, 0 if they are of one
-  /// instant.
-  double direction = 0.0;
-};
 
 /// In what other tracks differ from one.
 enum class Rivals : std::uint8_t { none, directions /*of time*/, motions };
@@ -36,16 +25,15 @@ struct FirstLook {
   int rounds = 1;                      ///< each looks half as far as the one before
 };
 
-/// Those of some poses, in the order of time, at which a map with finest cells of that side takes in the sweeps.
-[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, double side);
+/// Those of some poses, in the order of time, at which a map takes in the sweeps.
+[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings);
 
 /// Predict, register, judge, update.
 class Track {
 public:
-  /// \param side m, of the map's finest cells
   /// \param open along which its rivals have moved differently, in the sensor's axes (\ref SurfaceProblem::open)
-  Track(const TrackSettings& settings, double side, const Eigen::Vector3d& open = Eigen::Vector3d::Zero())
-      : settings_(settings), side_(side), open_(open)
+  explicit Track(const TrackSettings& settings, const Eigen::Vector3d& open = Eigen::Vector3d::Zero())
+      : settings_(settings), open_(open)
   {
   }
 
@@ -104,7 +92,6 @@ private:
   void update(const Sweep& sweep, const SurfaceRegistration& registration);
 
   TrackSettings settings_;
-  double side_;
   Eigen::Vector3d open_;
   std::optional<TrackMap> map_;
   bool keeps_map_ = true;

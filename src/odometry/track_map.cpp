@@ -6,13 +6,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <numeric>
 #include <vector>
 
 namespace pcl_floam {
 
 namespace {
 
-void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
+void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
 {
   constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
@@ -31,18 +33,37 @@ void insertInto(VoxelPyramid& map, const std::vector<ScanPoint>& points, const M
 
 }  // namespace
 
-TrackMap::TrackMap(double side, double given_horizon)
-    : space(side), edges(side, SurfaceShapes::lines), horizon(given_horizon)
+TrackMap::TrackMap(const TrackSettings& settings)
+    : edges_(settings.side, SurfaceShapes::lines), horizon_(settings.horizon)
 {
+  const SurfaceMap::ConstPtr& own = settings.components.map;
+  space_ = own ? own->makeEmpty(settings.side) : std::make_unique<VoxelPyramid>(settings.side);
+}
+
+TrackMap::TrackMap(const TrackMap& other) : space_(other.space_->copy()), edges_(other.edges_), horizon_(other.horizon_)
+{
+}
+
+TrackMap& TrackMap::operator=(const TrackMap& other)
+{
+  return *this = TrackMap(other);
 }
 
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
-  insertInto(space, sweep.dense, sensor);
-  insertInto(edges, sweep.edges, sensor);
-  space.crop(pose.middle.translation, horizon);
-  edges.crop(pose.middle.translation, horizon);
+  insertInto(*space_, sweep.dense, sensor);
+  insertInto(edges_, sweep.edges, sensor);
+  space_->crop(pose.middle.translation, horizon_);
+  edges_.crop(pose.middle.translation, horizon_);
+}
+
+void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges)
+{
+  std::vector<std::uint32_t> lasers(space.size() + edges.size());
+  std::iota(lasers.begin(), lasers.end(), 0U);
+  space_->insert(space.data(), lasers.data(), space.size());
+  edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
 }
 
 }  // namespace pcl_floam

@@ -2,17 +2,16 @@
 /// One or more tracks, judged by one evidence.
 #pragma once
 
-#include "odometry/first_motion.h"
+#include "odometry/start.h"
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace pcl_floam {
 
-/// The first two sweeps hardly tell how the sensor moves on an open road. So several motions are followed for the
-/// first sweeps, each by a track of its own, and the one that explains them best stays. Where nothing tells which way
-/// time runs in a sweep, each way has its tracks, until one explains them better. Otherwise there is one track all the
-/// time.
+/// One track all the time, but for the start (\ref Start), and where nothing tells which way time runs in a sweep: each
+/// way has its track then, until one explains the sweeps better.
 class Tracker {
 public:
   explicit Tracker(const TrackSettings& settings) : settings_(settings) {}
@@ -40,13 +39,13 @@ public:
   /// The map takes in the last sweep, if that is a keyframe: apart, since nothing but the next step waits for it.
   void updateMap(const Sweep& sweep);
 
-  [[nodiscard]] bool hasBegun() const { return !first_.sample.empty() || !hypotheses_.empty(); }
+  [[nodiscard]] bool hasBegun() const { return start_ || isTracking(); }
   /// Whether a motion is known.
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether it is not decided yet how the sensor began to move.
-  [[nodiscard]] bool isOpen() const { return is_open_; }
+  [[nodiscard]] bool isOpen() const { return start_ && isTracking(); }
   /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well.
-  [[nodiscard]] bool isUndecided() const;
+  [[nodiscard]] bool isUndecided() const { return isOpen() && start_->isUndecided(hypotheses_); }
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
   /// Whether they may since several motions are followed.
@@ -57,53 +56,25 @@ public:
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
 
 private:
-  struct Hypothesis {
-    Track track;
-    std::vector<SweepPose> poses;
-    SurfaceRegistration last;
-    bool is_lost = false;
-    std::size_t number = 0;
-    std::size_t without_trace = 0;  ///< first sweeps that did not tell of a direction
-
-    [[nodiscard]] double direction() const { return track.settings().direction; }
-    [[nodiscard]] double evidence() const;
-    [[nodiscard]] double moved() const;
-  };
   struct PriorMap {
     std::vector<Eigen::Vector3d> space, edges;
     SE3 guess;
     bool keeps_map = true;
   };
 
+  void choosePoints(Sweep& sweep);
   Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
-  Outcome findFirstMotion(const Sweep& sweep);
-  void suppose(const FirstMotions& motions, const Sweep& sweep, const TrackSettings& settings, Outcome& outcome);
-  void suppose(const SurfaceRegistration& found, Track track, Outcome& outcome);
-  void followUp(const Sweep& sweep, Outcome& outcome);
-  bool stepAll(const Sweep& sweep);
-  void giveUp(double behind);
-  void settle();
-  void settle(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
-              bool leaves_no_trace) const;
-  void keepOneOfEachDirection(bool (*isBefore)(const Hypothesis&, const Hypothesis&));
-  [[nodiscard]] bool hasRivals() const;
-  [[nodiscard]] bool leavesNoTrace() const;
-  static bool isLikelier(const Hypothesis& a, const Hypothesis& b);
-  static bool hasMovedLess(const Hypothesis& a, const Hypothesis& b);
-  [[nodiscard]] std::vector<TrackSettings> directions(bool are_known) const;
+  Outcome beginWithSecond(const Sweep& sweep);
+  Outcome stepAll(const Sweep& sweep);
 
   TrackSettings settings_;
   SpatialSampling sampling_;
-  double side_ = 0.0;                // m, of the finest cells; 0 until the first sweep
-  std::vector<PriorMap> prior_map_;  // none or one
-  Sweep first_;
-  int failed_ = 0;
-  std::vector<Hypothesis> hypotheses_;  // the likeliest first
-  std::size_t numbered_ = 0;
-  bool is_open_ = false;
+  std::optional<PriorMap> prior_map_;
+  std::optional<Start> start_;  // from the first sweep until it is settled
+  int failed_ = 0;              // sweeps that did not fit the first one
+  Hypotheses hypotheses_;
   bool may_correct_ = false;
-  std::vector<Sweep> kept_;  // while open
 };
 
 }  // namespace pcl_floam

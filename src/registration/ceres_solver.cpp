@@ -104,6 +104,37 @@ void addResiduals(const std::vector<Correspondence>& correspondences, const Swee
   }
 }
 
+/// Equations of the perturbation as residuals: sqrt(d) (v^T x + v^T b / d) for each eigenvalue d of H and its v.
+class EquationsCost : public ceres::SizedCostFunction<6, 6> {
+public:
+  explicit EquationsCost(const PoseEquations& equations)
+  {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(equations.information);
+    const double negligible = 1e-12 * solver.eigenvalues()[5];
+    for (int i = 0; i < 6; ++i) {
+      const double d = solver.eigenvalues()[i];
+      if (d > negligible) {
+        derivative_.row(i) = std::sqrt(d) * solver.eigenvectors().col(i).transpose();
+        residual_[i] = solver.eigenvectors().col(i).dot(equations.gradient) / std::sqrt(d);
+      }
+    }
+  }
+
+  bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override
+  {
+    Eigen::Map<Vector6>{residuals} = residual_ + derivative_ * Eigen::Map<const Vector6>(parameters[0]);
+    if (jacobians != nullptr && jacobians[0] != nullptr) {
+      Eigen::Map<RowMajor6>{jacobians[0]} = derivative_;
+    }
+    return true;
+  }
+
+private:
+  using RowMajor6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor | Eigen::DontAlign>;
+  RowMajor6 derivative_ = RowMajor6::Zero();
+  Vector6 residual_ = Vector6::Zero();
+};
+
 /// The perturbation's rotation vector is exp's, its translation is applied after it: the twist of the same motion.
 Vector6 asTwist(const Vector6& perturbation)
 {
@@ -113,7 +144,7 @@ Vector6 asTwist(const Vector6& perturbation)
 }  // namespace
 
 Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
-                       const Correspondences& correspondences, const KernelScales& scales)
+                       const Correspondences& correspondences, const KernelScales& scales, const PoseEquations& besides)
 {
   // The losses must outlive the problem, which only borrows them.
   const auto edge_loss = makeLoss(problem.parameters.kernel, scales.edge);
@@ -122,6 +153,7 @@ Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& mod
   ceres::Problem ceres_problem;
   addResiduals(correspondences.edges, model, problem.parameters.locked, edge_loss.get(), perturbation, ceres_problem);
   addResiduals(correspondences.planes, model, problem.parameters.locked, plane_loss.get(), perturbation, ceres_problem);
+  ceres_problem.AddResidualBlock(new EquationsCost(besides), nullptr, perturbation.data());
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

@@ -4,6 +4,7 @@
 #include "registration/correspondences.h"
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
+#include "registration/pose_factors.h"
 #include "registration/weights.h"
 
 #include <algorithm>
@@ -54,6 +55,7 @@ public:
                         const RegistrationParameters& parameters)
       : source_(source),
         on_iteration_(run.on_iteration),
+        factors_{run.factors, SE3()},
         model_(localModel(run)),
         problem_{target, parameters, run.guess.translation, run.threads},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
@@ -112,6 +114,9 @@ private:
                         correspondences_);
     const KernelScales scales = adaptKernelScales(problem_, correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
+    const PoseEquations besides = this->besides();
+    equations_.information += besides.information;
+    equations_.gradient += besides.gradient;
     ++report_.iterations;
     if (equations_.count() < problem_.parameters.min_correspondences) {
       if (stride_ > 1) {
@@ -121,7 +126,7 @@ private:
       report_.termination = Termination::too_few_correspondences;
       return true;
     }
-    return take(solve(scales));
+    return take(solve(scales, besides));
   }
 
   [[nodiscard]] InformationAnalysis analysis() const
@@ -129,10 +134,21 @@ private:
     return InformationAnalysis(equations_, problem_.parameters.weak_threshold, freeMotions(problem_.parameters.locked));
   }
 
-  [[nodiscard]] Vector6 solve(const KernelScales& scales) const
+  /// What else is known of the pose, as so many residuals of weight 1.
+  [[nodiscard]] PoseEquations besides() const
   {
-    return problem_.parameters.solver == SolverKind::ceres ? solveWithCeres(problem_, model_, correspondences_, scales)
-                                                           : analysis().step();
+    PoseEquations known = factors_.at(pose(), -trajectory_.pose().translation);
+    const double variance = equations_.count() > 0 ? featureVariance(equations_) : 0.0;
+    known.information *= variance;
+    known.gradient *= variance;
+    return known;
+  }
+
+  [[nodiscard]] Vector6 solve(const KernelScales& scales, const PoseEquations& besides) const
+  {
+    return problem_.parameters.solver == SolverKind::ceres
+               ? solveWithCeres(problem_, model_, correspondences_, scales, besides)
+               : analysis().step();
   }
 
   /// Applies a step on the left (Eq. 11). \return true when the iterations are over
@@ -193,6 +209,7 @@ private:
 
   const FeatureSet& source_;
   const std::function<void(const SE3&)>& on_iteration_;
+  PoseFactors factors_;
   SweepModel model_;
   RegistrationProblem problem_;
   SweepTrajectory trajectory_;  ///< the present estimate, relative to the problem's origin

@@ -128,7 +128,7 @@ private:
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
     report.information = strong_.transpose() * sums.equations.information * strong_;
-    result.told = told(report.information);
+    result.told = told(report.information / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
     report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
@@ -138,10 +138,16 @@ private:
         problem_.scan.points->size() + (problem_.edges.points != nullptr ? problem_.edges.points->size() : 0);
   }
 
+  /// What else is known of the pose.
+  [[nodiscard]] PoseEquations besides() const
+  {
+    return problem_.factors != nullptr ? problem_.factors->at(pose_) : PoseEquations();
+  }
+
   /// Of the pose, whatever was expected.
   [[nodiscard]] Matrix6 told(const Matrix6& information) const
   {
-    Square6 known = information / kResidualsBesideMotion;
+    Square6 known = information;
     known.diagonal().array() += kNothingKnown;
     holdLocked(known);
     return withoutLocked(Square6(known.inverse()));
@@ -262,6 +268,9 @@ private:
     equations.gradient << strong_.transpose() * e.gradient, strong_.transpose() * e.twist_gradient;
     equations.gradient /= kResidualsBesideMotion;
     equations.gradient += prior_ * off;
+    const PoseEquations besides = this->besides();
+    equations.information.topLeftCorner<6, 6>() += besides.information;
+    equations.gradient.head<6>() += besides.gradient;
     holdLocked(equations.information);
     for (int i = 0; i < 12; ++i) {
       equations.gradient[i] = isLocked(i) ? 0.0 : equations.gradient[i];

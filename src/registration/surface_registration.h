@@ -2,6 +2,8 @@
 /// The pose estimation: points of a scan against the surfaces of a map (the paper's "Pose Estimation").
 #pragma once
 
+#include "registration/pose_factors.h"
+
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/map/surface.h>
@@ -45,6 +47,7 @@ struct SweepPrior {
 struct SurfaceProblem {
   SurfaceTerm scan;   ///< points taken by space
   SurfaceTerm edges;  ///< the paper's edge features
+  const PoseFactors* factors = nullptr;
   SweepPrior prior;
   Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess: the first iteration looks so far
   SweepPlacement placement = SweepPlacement::joint;

@@ -4,6 +4,8 @@
 
 #include <pcl_floam/common/se3.h>
 
+#include <functional>
+
 namespace pcl_floam {
 
 /// A scan becomes a keyframe when the sensor has moved by more than one of the thresholds since the last one.
@@ -13,5 +15,8 @@ struct KeyframePolicy {
 
   [[nodiscard]] bool isKeyframe(const SE3& last_keyframe, const SE3& pose) const;
 };
+
+/// A rule of one's own: whether a scan becomes a keyframe. Both poses are `world_T_sensor`s, up to a common motion.
+using KeyframeRule = std::function<bool(const SE3& last_keyframe, const SE3& pose)>;
 
 }  // namespace pcl_floam

@@ -5,6 +5,7 @@
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 #include <pcl_floam/motion/motion_hint.h>
+#include <pcl_floam/odometry/odometry_components.h>
 #include <pcl_floam/odometry/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
@@ -63,6 +64,13 @@ public:
   /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees
   /// \throws std::invalid_argument for a pose that is not finite
   void setPose(const SE3& world_T_sensor);
+
+  /// Objects of one's own in place of the odometry's, or beside them. Forgets map and motion; \ref reset and
+  /// \ref localizeIn keep them.
+  ///
+  /// \throws std::invalid_argument for a factor that is null, and for what the engine has no use for
+  void setComponents(const OdometryComponents& components);
+  [[nodiscard]] const OdometryComponents& components() const;
 
   /// The last report.
   [[nodiscard]] const OdometryReport& report() const;

@@ -6,11 +6,13 @@
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/registration/pose_factor.h>
 #include <pcl_floam/registration/registration_parameters.h>
 #include <pcl_floam/registration/registration_report.h>
 #include <pcl_floam/registration/sweep_model.h>
 
 #include <functional>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -27,7 +29,8 @@ struct RegistrationRun {
   /// down to `max_neighbor_distance`. 0 uses the latter throughout.
   double guess_uncertainty = 0.0;
   int threads = 1;
-  SweepModel sweep;  ///< default: the source is not distorted
+  SweepModel sweep;                           ///< default: the source is not distorted
+  std::vector<PoseFactor::ConstPtr> factors;  ///< what else is known of the pose
   /// Called before each iteration with the present pose, if set.
   std::function<void(const SE3& target_T_source)> on_iteration;
 };

@@ -1,6 +1,6 @@
 // The whole paper over a folder of scans or a recording (mcap, rosbag, pcap), in a few lines.
 //
-//   ./04_odometry_over_a_folder FOLDER|RECORDING [TOPIC]
+//   ./03_odometry_over_a_folder FOLDER|RECORDING [TOPIC]
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,6 +1,6 @@
 // The odometry at work: the present scan (red), the map (grey) and the way so far (green). Q closes the window.
 //
-//   ./07_live_view SCANS [--frames N] [--picture FILE.png]     (stop after N scans; save what was seen last)
+//   ./09_live_view SCANS [--frames N] [--picture FILE.png]     (stop after N scans; save what was seen last)
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,7 +1,7 @@
 // PCL's "How to use iterative closest point" with one typedef changed.
 //
-//   ./05_swap_icp            a made-up cloud, moved
-//   ./05_swap_icp a.pcd b.pcd
+//   ./02_swap_icp            a made-up cloud, moved
+//   ./02_swap_icp a.pcd b.pcd
 #include <pcl_floam/registration/edge_plane_registration.h>
 
 #include <pcl/common/transforms.h>

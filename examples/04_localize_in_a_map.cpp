@@ -1,6 +1,6 @@
 // Where is the sensor in a map that was saved earlier? The map stays as it is, so that the error does not grow.
 //
-//   ./06_localize_in_a_map MAP SCANS [X Y Z YAW]     (pose of the first scan, in m and degrees; default: the origin)
+//   ./04_localize_in_a_map MAP SCANS [X Y Z YAW]     (pose of the first scan, in m and degrees; default: the origin)
 //
 // MAP is a folder with map_edges.pcd and map_planes.pcd, as pcl_floam_odometry leaves one.
 #include <pcl_floam/io/map_io.h>

@@ -1,6 +1,6 @@
 // PCL's filters and this library's in one chain: cut away the robot, undistort the sweep, keep its plane points.
 //
-//   ./03_compose_with_pcl_filters sweep.pcd planes.pcd VX      (VX: forward speed in m per sweep)
+//   ./08_compose_with_pcl_filters sweep.pcd planes.pcd VX      (VX: forward speed in m per sweep)
 #include <pcl_floam/filters/feature_extraction.h>
 #include <pcl_floam/filters/motion_compensation.h>
 

@@ -1,0 +1,59 @@
+// A factor of one's own: a robot on a level floor, whose sensor keeps its height and stays upright.
+//
+//   ./05_ground_factor SCANS
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/odometry/odometry.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+namespace {
+
+/// The world is where the first scan was: height, roll and pitch are zero there.
+class LevelGround : public pcl_floam::PoseFactor {
+public:
+  void addTo(const pcl_floam::SE3& world_T_sensor, pcl_floam::PoseEquations& equations) const override
+  {
+    constexpr double kBump = 0.002;  // m
+    constexpr double kTilt = 0.002;  // rad
+    const Eigen::Vector3d up = world_T_sensor.rotation.col(2);
+    pcl_floam::Vector6 derivative;
+    derivative << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
+    equations.add(world_T_sensor.translation.z(), derivative, kBump * kBump);
+    for (int axis = 0; axis < 2; ++axis) {  // a turn by w moves it by w x up
+      derivative << Eigen::Vector3d::Zero(), up.cross(Eigen::Vector3d::Unit(axis));
+      equations.add(up[axis], derivative, kTilt * kTilt);
+    }
+  }
+};
+
+double largestHeight(const pcl_floam::ScanSource& scans, const pcl_floam::OdometryComponents& components)
+{
+  pcl_floam::OdometryPipeline odometry;  // for a known point type: pcl_floam::Odometry<PointT>
+  odometry.setComponents(components);
+  double largest = 0.0;
+  pcl::PCLPointCloud2 scan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    scans.read(i, scan);
+    const auto& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
+    largest = std::max(largest, std::abs(report.world_T_sensor.translation.z()));
+  }
+  return largest;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+try {
+  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
+  pcl_floam::OdometryComponents components;
+  const double by_points = largestHeight(scans, components);
+  components.factors = {std::make_shared<LevelGround>()};
+  std::cout << "up or down by " << 1000.0 * by_points << " mm, on level ground by "
+            << 1000.0 * largestHeight(scans, components) << " mm\n";
+  return 0;
+} catch (const pcl_floam::FileError& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
+}

@@ -1,0 +1,98 @@
+// A map of one's own under the odometry: a plain grid of cells, each with the plane through its points.
+//
+//   ./07_own_map SCANS
+#include <pcl_floam/io/scan_source.h>
+#include <pcl_floam/odometry/odometry.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <map>
+
+namespace {
+
+class Grid : public pcl_floam::SurfaceMap {
+public:
+  explicit Grid(double side = 1.0) : side_(side) {}
+
+  std::unique_ptr<SurfaceMap> makeEmpty(double side) const override { return std::make_unique<Grid>(2.0 * side); }
+  std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<Grid>(*this); }
+  bool empty() const override { return cells_.empty(); }
+  void crop(const Eigen::Vector3d& /*center*/, double /*radius*/) override {}
+
+  void insert(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count) override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      Cell& cell = cells_[cellAt(places[i])];
+      cell.count += 1.0;
+      cell.sum += places[i];
+      cell.squares += places[i] * places[i].transpose();
+    }
+  }
+
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            pcl_floam::Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto cell = cells_.find(cellAt(places[i]));
+      surfaces[i] = cell != cells_.end() && cell->second.count > 5.0 ? planeIn(cell->second) : pcl_floam::Surface();
+    }
+  }
+
+private:
+  struct Cell {
+    double count = 0.0;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  };
+
+  std::array<int, 3> cellAt(const Eigen::Vector3d& p) const
+  {
+    const auto n = [this](double x) { return static_cast<int>(std::floor(x / side_)); };
+    return {n(p.x()), n(p.y()), n(p.z())};
+  }
+
+  pcl_floam::Surface planeIn(const Cell& cell) const
+  {
+    pcl_floam::Surface plane;
+    plane.center = cell.sum / cell.count;
+    const Eigen::Matrix3d covariance = cell.squares / cell.count - plane.center * plane.center.transpose();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+    if (axes.eigenvalues()[0] < 0.05 * axes.eigenvalues()[1]) {
+      plane.kind = pcl_floam::SurfaceKind::plane;
+      plane.direction = axes.eigenvectors().col(0);
+      plane.thickness = std::max(0.0, axes.eigenvalues()[0]);
+      plane.extent = axes.eigenvalues()[1];
+      plane.count = static_cast<std::uint32_t>(cell.count);
+      plane.size = side_;
+    }
+    return plane;
+  }
+
+  double side_;
+  std::map<std::array<int, 3>, Cell> cells_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv)
+try {
+  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
+  pcl_floam::OdometryComponents components;
+  components.map = std::make_shared<Grid>();
+  pcl_floam::OdometryPipeline odometry;
+  odometry.setComponents(components);
+  pcl::PCLPointCloud2 scan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    scans.read(i, scan);
+    const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
+    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
+              << report.world_T_sensor.translation.transpose() << '\n';
+  }
+  return 0;
+} catch (const pcl_floam::FileError& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
+}

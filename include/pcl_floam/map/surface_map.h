@@ -1,0 +1,42 @@
+/// \file surface_map.h
+/// A map that an odometry registers with and adds to: the interface for maps of one's own.
+#pragma once
+
+#include <pcl_floam/map/surface.h>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+namespace pcl_floam {
+
+/// What scans are registered with, and what keyframes enter. The odometry's own is a pyramid of voxels.
+///
+/// While it is unclear how the sensor began to move, several maps are kept side by side: each is made by \ref makeEmpty
+/// or \ref copy of another, and used by one thread at a time, but for \ref find.
+class SurfaceMap : public SurfaceSearch {
+public:
+  using Ptr = std::shared_ptr<SurfaceMap>;
+  using ConstPtr = std::shared_ptr<const SurfaceMap>;
+
+  /// A map like this one with nothing in it.
+  /// \param side m, of cells of which the first scan fills some thousand: the scale of what scans tell
+  [[nodiscard]] virtual std::unique_ptr<SurfaceMap> makeEmpty(double side) const = 0;
+
+  [[nodiscard]] virtual std::unique_ptr<SurfaceMap> copy() const = 0;
+
+  /// What comes in from now on is of another keyframe.
+  virtual void beginKeyframe() {}
+
+  /// Takes in some points of the keyframe.
+  /// \param places m, in the map's frame; undistorted
+  /// \param lasers the scan line that saw each; without scan lines a number of its own
+  virtual void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) = 0;
+
+  /// Forgets what is farther than \p radius (m) from \p center; whole cells, or nothing if the map need not be small.
+  virtual void crop(const Eigen::Vector3d& center, double radius) = 0;
+};
+
+}  // namespace pcl_floam

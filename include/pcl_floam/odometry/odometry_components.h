@@ -1,0 +1,34 @@
+/// \file odometry_components.h
+/// Objects of one's own in place of the odometry's.
+#pragma once
+
+#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/map/keyframe_policy.h>
+#include <pcl_floam/map/surface_map.h>
+#include <pcl_floam/registration/pose_factor.h>
+
+#include <functional>
+#include <vector>
+
+namespace pcl_floam {
+
+/// What of \ref Odometry is replaced or added. What is empty stays as it is. The objects are shared by copies of an
+/// odometry, and called from its threads.
+struct OdometryComponents {
+  /// What else is known of each pose (`world_T_sensor` in the middle of the sweep).
+  std::vector<PoseFactor::ConstPtr> factors;
+
+  /// Which scans enter the map that is registered with. By default, by surfaces, those 0.3 cells or 0.1 rad apart; by
+  /// features as OdometryParameters::keyframe says.
+  KeyframeRule is_keyframe;
+
+  /// Chooses the returns that are registered from those that may enter the map (engine `surfaces`). By default one of
+  /// each cell.
+  /// \param[out] registered empty
+  std::function<void(const std::vector<ScanPoint>& points, std::vector<ScanPoint>& registered)> select_points;
+
+  /// In place of the pyramid of voxels (engine `surfaces`): \ref SurfaceMap::makeEmpty is asked for every map.
+  SurfaceMap::ConstPtr map;
+};
+
+}  // namespace pcl_floam
