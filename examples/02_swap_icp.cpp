@@ -58,5 +58,9 @@ int main(int argc, char** argv)
   icp.align(aligned);
   std::cout << "has converged: " << icp.hasConverged() << ", score: " << icp.getFitnessScore() << '\n'
             << icp.getFinalTransformation() << '\n';
+  const pcl_floam::RegistrationReport& report = icp.report();  // what ICP does not tell
+  std::cout << toString(report.termination) << " after " << report.iterations
+            << " iterations, standard deviations (m, then rad) " << report.covariance.diagonal().cwiseSqrt().transpose()
+            << '\n';
   return icp.hasConverged() ? 0 : 1;
 }

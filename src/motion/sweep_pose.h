@@ -20,4 +20,10 @@ struct SweepPose {
   }
 };
 
+/// Seen from elsewhere.
+[[nodiscard]] inline SweepPose operator*(const SE3& target_T_source, const SweepPose& pose)
+{
+  return {target_T_source * pose.middle, pose.twist, pose.acceleration};
+}
+
 }  // namespace pcl_floam

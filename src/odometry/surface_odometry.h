@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/side_by_side.h"
-#include "odometry/first_poses.h"
+#include "odometry/first_scans.h"
 #include "odometry/odometry_run.h"
 #include "odometry/tracker.h"
 
@@ -26,8 +26,7 @@ struct SurfaceOdometry : OdometryRun {
   SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
   Sweep sweep;
   bool has_enough_points = false;
-  FirstPoses first_poses;               ///< until it is decided how the sensor moved
-  std::vector<FeatureSet> first_scans;  ///< their features, as measured
+  FirstScans first_scans;  ///< until it is decided how the sensor moved
 
   void track(const CloudView& cloud, std::optional<double> stamp)
   {
@@ -54,7 +53,7 @@ struct SurfaceOdometry : OdometryRun {
   void beginScan(std::size_t points, std::optional<double> stamp)
   {
     OdometryRun::beginScan(points, stamp);
-    first_poses.elapse(periods);
+    first_scans.elapse(periods);
   }
 
   // Sensor Model and Feature Extraction
@@ -109,14 +108,13 @@ struct SurfaceOdometry : OdometryRun {
   /// The first scan: its motion is found with the second.
   void start()
   {
-    if (first_poses.isOpen()) {
+    if (first_scans.isOpen()) {
       report.reason = "started again, since the first scan was never matched";
     }
     sweep.periods = 1.0;
     registerSweep();
     reachScan();
-    first_poses.begin();
-    first_scans = {scan.features};
+    first_scans.begin(scan.features);
     map_building.clear();
     report.keyframe = map_building.add(scan.features, {initial_pose}, parameters);
     report.milliseconds.map += watch.lap();
@@ -141,8 +139,7 @@ struct SurfaceOdometry : OdometryRun {
              was_tracking ? sweep.hint : std::nullopt);  // the first motion is only sought by it
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
-      first_scans.push_back(scan.features);
-      first_poses.add();
+      first_scans.add(scan.features);
     }
     if (outcome.changed_track && !map_building.hasPrior()) {
       placeTrack();
@@ -192,19 +189,19 @@ struct SurfaceOdometry : OdometryRun {
   {
     const std::vector<SweepPose>& poses = tracker.poses();
     placeTrack();
-    report.corrected_poses = first_poses.correct(poses, world_T_track, poseFraction());
-    if (first_poses.jumped()) {
+    report.corrected_poses = first_scans.correct(poses, world_T_track, poseFraction());
+    if (first_scans.jumped()) {
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
     }
     map_building.clear();
     for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
-      map_building.add(first_scans[i], inWorld(poses[i]), parameters);
+      map_building.add(first_scans.features()[i], world_T_track * poses[i], parameters);
     }
   }
 
   void updateMap(const CloudView& cloud)
   {
-    const SweepPose world_T_sweep = inWorld(tracker.track().pose());
+    const SweepPose world_T_sweep = world_T_track * tracker.track().pose();
     sideBySide(
         parameters.threads, [&] { tracker.updateMap(sweep); },
         [&] { report.keyframe = map_building.add(cloud, scan, world_T_sweep, parameters); });
@@ -223,7 +220,7 @@ struct SurfaceOdometry : OdometryRun {
     report.reason = reason;
     report.told_deviation = ToldMotion::kNothing;
     const bool started = tracker.hasBegun() || map_building.hasPrior();
-    first_poses.miss();
+    first_scans.miss();
     finish(started ? TrackingState::predicted : TrackingState::not_started);
   }
 
@@ -246,17 +243,11 @@ struct SurfaceOdometry : OdometryRun {
       const Eigen::Matrix3d& turn = world_T_track.rotation;
       report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open() * turn.transpose();
     }
-    first_poses.give(report.world_T_sensor);
+    first_scans.give(report.world_T_sensor);
     if (tracker.isTracking() && !tracker.mayCorrect()) {
-      first_poses.close();
-      first_scans.clear();
+      first_scans.close();
     }
     report.milliseconds.total = watch.total();
-  }
-
-  [[nodiscard]] SweepPose inWorld(const SweepPose& pose) const
-  {
-    return {world_T_track * pose.middle, pose.twist, pose.acceleration};
   }
 
   [[nodiscard]] SweepPose poseNow() const
@@ -281,24 +272,19 @@ struct SurfaceOdometry : OdometryRun {
     if (!tracker.isTracking()) {
       initial_pose = world_T_sensor;
       tracker.place(world_T_sensor);
-      moveFirstScan();
+      if (first_scans.isOpen()) {
+        const FeatureSet features = first_scans.features().front();
+        first_scans.begin(features);
+        first_scans.give(initial_pose);
+        map_building.clear();
+        map_building.add(features, {initial_pose}, parameters);
+      }
       return;
     }
     tracker.place(world_T_track.inverse() * world_T_sensor);
     told_motion.forget();
-    first_poses.close();
-    first_scans.clear();
+    first_scans.close();
     periods = periods_error = 0.0;
-  }
-
-  void moveFirstScan()
-  {
-    if (!first_scans.empty()) {
-      first_poses.begin();
-      first_poses.give(initial_pose);
-      map_building.clear();
-      map_building.add(first_scans.front(), {initial_pose}, parameters);
-    }
   }
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)

@@ -1,7 +1,6 @@
 #include "odometry/track.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -11,36 +10,10 @@ namespace pcl_floam {
 
 namespace {
 
-/// A keyframe, in sides of the finest cells and in rad.
-constexpr double kKeyframeSides = 0.3;
-constexpr double kKeyframeTurn = 0.1;
-/// How far off a pose may be that somebody gives, m and rad.
-constexpr double kGivenOff = 3.0;
-constexpr double kGivenTurned = 0.25;
+/// How far off a pose may be that somebody gives.
+constexpr Doubt kGiven = {3.0, 0.25};
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
-
-bool becomesKeyframe(const SE3& last, const SE3& pose, const TrackSettings& settings)
-{
-  if (settings.components.is_keyframe) {
-    return settings.components.is_keyframe(last, pose);
-  }
-  const SE3 moved = last.inverse() * pose;
-  return moved.translation.norm() > kKeyframeSides * settings.side || rotationAngle(moved.rotation) > kKeyframeTurn;
-}
-
-Matrix6 covarianceOf(double translation, double rotation)
-{
-  Vector6 variance;
-  variance << Eigen::Vector3d::Constant(translation * translation), Eigen::Vector3d::Constant(rotation * rotation);
-  return variance.asDiagonal();
-}
-
-/// Of a guess that may be so far off in all directions.
-Matrix6 reachOf(double far, double far_turn)
-{
-  return covarianceOf(far / std::sqrt(3.0), far_turn / std::sqrt(3.0));
-}
 
 /// Distortion Compensation, first stage (Eq. 3 and 4).
 SweepPlacement placementOf(CompensationMode mode)
@@ -82,11 +55,6 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found)
   return found;
 }
 
-bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
-{
-  return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
-}
-
 }  // namespace
 
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
@@ -102,7 +70,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
-    problem.reach = reachOf(far, kTurnPerMetre * far);
+    problem.reach = reachOf({far, kTurnPerMetre * far});
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = problem.looks_for_weak = round + 1 == look.rounds;
@@ -132,20 +100,9 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   return found;
 }
 
-std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings)
-{
-  std::vector<bool> keyframes;
-  SE3 last;
-  for (const SE3& pose : poses) {
-    keyframes.push_back(keyframes.empty() || becomesKeyframe(last, pose, settings));
-    last = keyframes.back() ? pose : last;
-  }
-  return keyframes;
-}
-
 void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
 {
-  constexpr double kKnown = 0.01;  // m and rad
+  constexpr Doubt kKnown = {0.01, 0.01};
   map_.emplace(settings_);
   Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -154,10 +111,10 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
     pose_ = {poses[i], fractionOf(sweeps[i]) * velocity};
     if (i == 0) {
       motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
-      motion_.place(poses[i], covarianceOf(kKnown, kKnown));
+      motion_.place(poses[i], covarianceOf(kKnown));
     } else {
       motion_.predict(sweeps[i].periods);
-      motion_.correct(poses[i], covarianceOf(kKnown, kKnown));
+      motion_.correct(poses[i], covarianceOf(kKnown));
     }
     if (keyframes[i]) {
       map_->insert(sweeps[i], pose_);
@@ -171,7 +128,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
   keyframe_ = guess;
-  settle(sweep, guess, kGivenOff, kGivenTurned);
+  settle(sweep, guess, kGiven);
   SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
   if (found.report.hasConverged()) {
     update(sweep, found);
@@ -225,7 +182,7 @@ void Track::predict(const Sweep& sweep)
   periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
   motion_.predict(sweep.periods, sweep.hint, sweep.periods_error);
   if (is_placed_) {
-    settle(sweep, pose_.middle, kGivenOff, kGivenTurned);
+    settle(sweep, pose_.middle, kGiven);
   }
 }
 
@@ -236,53 +193,28 @@ void Track::predict(const Sweep& sweep)
 bool Track::seek(const Sweep& sweep, const SurfaceRegistration& found)
 {
   constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
-  constexpr int kTurns = 18;
-  constexpr double kReach = 1.0;   // m
-  constexpr double kTurned = 0.4;  // rad
-  if (sweep.periods <= kLong) {
-    return found.explained() >= kByChance && goToBest(sweep, {motion_.pose()}, kGivenOff, kGivenTurned);
+  constexpr Doubt kAround = {1.0, 0.4};
+  const bool is_anywhere = sweep.periods > kLong;
+  if (!is_anywhere && found.explained() < kByChance) {
+    return false;
   }
-  std::vector<SE3> guesses;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    const Eigen::AngleAxisd about_axis(2.0 * M_PI * turn / kTurns, Eigen::Vector3d::UnitZ());
-    for (const SE3& place : {pose_.middle, motion_.pose()}) {
-      guesses.emplace_back(place.rotation * about_axis.toRotationMatrix(), place.translation);
-    }
-  }
-  return goToBest(sweep, guesses, kReach, kTurned);
-}
-
-bool Track::goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn)
-{
-  SurfaceProblem as_predicted = problemFor(sweep);
-  as_predicted.wants_evidence = true;
-  SurfaceRegistration best = registerSurfaces(as_predicted);
-  bool is_elsewhere = false;
-  for (const SE3& guess : guesses) {
-    const SurfaceRegistration found = registerFrom(sweep, guess, far, far_turn);
-    if (isBetter(found, best)) {
-      best = found;
-      is_elsewhere = true;
-    }
-  }
-  if (is_elsewhere) {
+  const Doubt doubt = is_anywhere ? kAround : kGiven;
+  const std::optional<SE3> place =
+      betterPlace(problemFor(sweep),
+                  is_anywhere ? anyTurnOf({pose_.middle, motion_.pose()}) : std::vector<SE3>{motion_.pose()}, doubt);
+  if (place) {
     sweeps_to_wait_ = kSweepsUntilKnown;
-    settle(sweep, best.report.target_T_source, far, far_turn);
+    settle(sweep, *place, doubt);
   }
-  return is_elsewhere;
+  return place.has_value();
 }
 
-/// Places the sensor where a sweep fits, from a guess that is far off, looking less and less far. What was known of the
-/// velocity tells nothing there.
-void Track::settle(const Sweep& sweep, const SE3& guess, double far, double far_turn)
+/// Places the sensor where a sweep fits, from a guess that is far off.
+void Track::settle(const Sweep& sweep, const SE3& guess, const Doubt& doubt)
 {
-  constexpr int kRounds = 4;
-  SE3 place = guess;
-  for (int round = 0; round < kRounds; ++round, far *= 0.5, far_turn *= 0.5) {
-    place = registerFrom(sweep, place, far, far_turn).report.target_T_source;  // that failed: where it began
-  }
+  const Place place = settledPlace(problemFor(sweep), guess, doubt);
   motion_ = MotionEstimate();
-  motion_.place(place, covarianceOf(far, far_turn));
+  motion_.place(place.pose, covarianceOf(place.doubt));
   periods_between_ = 0.0;
 }
 
@@ -298,19 +230,6 @@ void Track::forgetAlong(const std::vector<WeakDirection>& directions, double per
   for (const WeakDirection& weak : directions) {
     motion_.forgetAlong(weak.direction.head<3>(), periods);
   }
-}
-
-SurfaceRegistration Track::registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const
-{
-  SurfaceProblem problem = problemFor(sweep);
-  problem.prior.pose = guess;
-  problem.prior.velocity.setZero();
-  problem.prior.covariance = MotionEstimate(guess).covariance();
-  problem.prior.periods_between = 0.0;
-  problem.prior.pose_counts = false;
-  problem.reach = reachOf(far, far_turn);
-  problem.wants_evidence = true;
-  return registerSurfaces(problem);
 }
 
 SurfaceProblem Track::problemFor(const Sweep& sweep) const

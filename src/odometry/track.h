@@ -4,7 +4,9 @@
 
 #include "motion/motion_estimate.h"
 #include "motion/sweep_pose.h"
+#include "odometry/place_search.h"
 #include "odometry/sweep.h"
+#include "odometry/track_keyframes.h"
 #include "odometry/track_map.h"
 #include "odometry/track_settings.h"
 #include "registration/surface_registration.h"
@@ -24,9 +26,6 @@ struct FirstLook {
   double far = 0.0;                    ///< m, that it may be off
   int rounds = 1;                      ///< each looks half as far as the one before
 };
-
-/// Those of some poses, in the order of time, at which a map takes in the sweeps.
-[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings);
 
 /// Predict, register, judge, update.
 class Track {
@@ -84,10 +83,8 @@ private:
   void predict(const Sweep& sweep);
   SurfaceRegistration registerPredicted(const Sweep& sweep, Rivals rivals);
   bool seek(const Sweep& sweep, const SurfaceRegistration& found);
-  bool goToBest(const Sweep& sweep, const std::vector<SE3>& guesses, double far, double far_turn);
-  void settle(const Sweep& sweep, const SE3& guess, double far, double far_turn);
+  void settle(const Sweep& sweep, const SE3& guess, const Doubt& doubt);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
-  SurfaceRegistration registerFrom(const Sweep& sweep, const SE3& guess, double far, double far_turn) const;
   void judge(const SurfaceRegistration& registration);
   void update(const Sweep& sweep, const SurfaceRegistration& registration);
 

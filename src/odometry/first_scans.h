@@ -1,9 +1,10 @@
-/// \file first_poses.h
-/// The poses that were given out before it was decided how the sensor began to move, and what they should have been.
+/// \file first_scans.h
+/// What was given out before it was decided how the sensor began to move, and what it should have been.
 #pragma once
 
 #include "odometry/track.h"
 
+#include <pcl_floam/filters/features.h>
 #include <pcl_floam/odometry/odometry_report.h>
 
 #include <cstddef>
@@ -12,15 +13,17 @@
 namespace pcl_floam {
 
 /// Scans since the first one: those that were registered, and those between that told nothing.
-class FirstPoses {
+class FirstScans {
 public:
-  void begin();
+  /// \param features of the first one, as measured
+  void begin(const FeatureSet& features);
   /// It is decided: nothing is corrected any more.
-  void close() { *this = FirstPoses(); }
+  void close() { *this = FirstScans(); }
   [[nodiscard]] bool isOpen() const { return open_; }
   /// A scan comes, so many periods after the last one that was registered.
   void elapse(double periods) { periods_ = periods; }
-  void add() { at_.push_back({++sweep_, 0.0}); }
+  /// The scan was registered.
+  void add(const FeatureSet& features);
   void miss();
   void give(const SE3& world_T_sensor);
 
@@ -28,6 +31,8 @@ public:
   std::vector<SE3> correct(const std::vector<SweepPose>& poses, const SE3& world_T_track, double instant);
   /// Whether that was much.
   [[nodiscard]] bool jumped() const { return jumped_; }
+  /// Of the scans that were registered.
+  [[nodiscard]] const std::vector<FeatureSet>& features() const { return features_; }
 
 private:
   struct Place {
@@ -41,6 +46,7 @@ private:
   std::size_t sweep_ = 0;
   std::vector<Place> at_;
   std::vector<SE3> given_;
+  std::vector<FeatureSet> features_;
 };
 
 /// A covariance in other axes.

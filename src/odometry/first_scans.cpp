@@ -1,31 +1,38 @@
-#include "odometry/first_poses.h"
+#include "odometry/first_scans.h"
 
 #include <algorithm>
 
 namespace pcl_floam {
 
-void FirstPoses::begin()
+void FirstScans::begin(const FeatureSet& features)
 {
-  *this = FirstPoses();
+  *this = FirstScans();
   open_ = true;
   at_.push_back({});
+  features_ = {features};
 }
 
-void FirstPoses::miss()
+void FirstScans::add(const FeatureSet& features)
+{
+  at_.push_back({++sweep_, 0.0});
+  features_.push_back(features);
+}
+
+void FirstScans::miss()
 {
   if (open_) {
     at_.push_back({sweep_, periods_});
   }
 }
 
-void FirstPoses::give(const SE3& world_T_sensor)
+void FirstScans::give(const SE3& world_T_sensor)
 {
   if (open_) {
     given_.push_back(world_T_sensor);
   }
 }
 
-std::vector<SE3> FirstPoses::correct(const std::vector<SweepPose>& poses, const SE3& world_T_track, double instant)
+std::vector<SE3> FirstScans::correct(const std::vector<SweepPose>& poses, const SE3& world_T_track, double instant)
 {
   constexpr double kSame = 1e-3;  // m
   constexpr double kJump = 0.1;   // m

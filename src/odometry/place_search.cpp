@@ -1,0 +1,85 @@
+#include "odometry/place_search.h"
+
+#include "motion/motion_estimate.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <utility>
+
+namespace pcl_floam {
+
+namespace {
+
+/// What was known of the velocity tells nothing there.
+SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const Doubt& doubt)
+{
+  problem.prior.pose = guess;
+  problem.prior.velocity.setZero();
+  problem.prior.covariance = MotionEstimate(guess).covariance();
+  problem.prior.periods_between = 0.0;
+  problem.prior.pose_counts = false;
+  problem.reach = reachOf(doubt);
+  problem.wants_evidence = true;
+  return registerSurfaces(problem);
+}
+
+bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
+{
+  return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
+}
+
+}  // namespace
+
+Matrix6 covarianceOf(const Doubt& doubt)
+{
+  Vector6 variance;
+  variance << Eigen::Vector3d::Constant(doubt.far * doubt.far), Eigen::Vector3d::Constant(doubt.turned * doubt.turned);
+  return variance.asDiagonal();
+}
+
+Matrix6 reachOf(const Doubt& doubt)
+{
+  return covarianceOf({doubt.far / std::sqrt(3.0), doubt.turned / std::sqrt(3.0)});
+}
+
+Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt)
+{
+  constexpr int kRounds = 4;
+  SE3 pose = guess;
+  for (int round = 0; round < kRounds; ++round, doubt.far *= 0.5, doubt.turned *= 0.5) {
+    pose = registerFrom(expected, pose, doubt).report.target_T_source;  // that failed: where it began
+  }
+  return {pose, doubt};
+}
+
+std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector<SE3>& guesses, const Doubt& doubt)
+{
+  SurfaceProblem weighed = expected;
+  weighed.wants_evidence = true;
+  SurfaceRegistration best = registerSurfaces(weighed);
+  std::optional<SE3> place;
+  for (const SE3& guess : guesses) {
+    SurfaceRegistration found = registerFrom(expected, guess, doubt);
+    if (isBetter(found, best)) {
+      best = std::move(found);
+      place = best.report.target_T_source;
+    }
+  }
+  return place;
+}
+
+std::vector<SE3> anyTurnOf(const std::vector<SE3>& poses)
+{
+  constexpr int kTurns = 18;
+  std::vector<SE3> turned;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const Eigen::AngleAxisd about_axis(2.0 * M_PI * turn / kTurns, Eigen::Vector3d::UnitZ());
+    for (const SE3& pose : poses) {
+      turned.emplace_back(pose.rotation * about_axis.toRotationMatrix(), pose.translation);
+    }
+  }
+  return turned;
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,43 @@
+/// \file place_search.h
+/// Where the sensor is that may be far from where it was expected.
+#pragma once
+
+#include "registration/surface_registration.h"
+
+#include <pcl_floam/common/se3.h>
+
+#include <optional>
+#include <vector>
+
+namespace pcl_floam {
+
+/// How far off a pose may be.
+struct Doubt {
+  double far = 0.0;     ///< m
+  double turned = 0.0;  ///< rad
+};
+
+/// Of a pose: perturbations in each direction with these standard deviations.
+[[nodiscard]] Matrix6 covarianceOf(const Doubt& doubt);
+
+/// Of a guess that may be so far off in all directions.
+[[nodiscard]] Matrix6 reachOf(const Doubt& doubt);
+
+/// A place, and how far off it may still be.
+struct Place {
+  SE3 pose;
+  Doubt doubt;
+};
+
+/// Where a sweep fits, from a guess, looking less and less far.
+/// \param expected the sweep as a track would register it; where and how fast does not count
+[[nodiscard]] Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt);
+
+/// Where a sweep is explained best from some guesses; nothing if it is not better than from where it is expected.
+[[nodiscard]] std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector<SE3>& guesses,
+                                             const Doubt& doubt);
+
+/// Turned by any angle about its axis.
+[[nodiscard]] std::vector<SE3> anyTurnOf(const std::vector<SE3>& poses);
+
+}  // namespace pcl_floam
