@@ -3,7 +3,8 @@
 #include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
 #include "filters/scan_returns.h"
-#include "filters/vertical_correction.h"
+
+#include <pcl_floam/filters/vertical_angle.h>
 
 #include <algorithm>
 

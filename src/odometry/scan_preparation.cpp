@@ -1,9 +1,9 @@
 #include "odometry/scan_preparation.h"
 
 #include "filters/scan_line_finders.h"
-#include "filters/vertical_correction.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/vertical_angle.h>
 
 #include <algorithm>
 

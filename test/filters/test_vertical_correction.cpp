@@ -1,10 +1,15 @@
 // The correction of a sensor's vertical angles.
-#include "filters/vertical_correction.h"
 #include "support/random_motion.h"
+
+#include <pcl_floam/filters/vertical_correction.h>
+
+#include <pcl/point_types.h>
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 namespace pcl_floam::test {
 namespace {
@@ -51,6 +56,47 @@ TEST(VerticalCorrection, NothingIsDoneByDefaultNorStraightAbove)
   EXPECT_EQ(features.planes[0].z, before.planes[0].z);
   correctVerticalAngle(1.0, features);
   EXPECT_EQ(features.edges[0].z, 5.0F);
+}
+
+TEST(VerticalCorrection, AsAFilterItKeepsOrderFieldsAndWhatIsNotFinite)
+{
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZINormal>>();
+  for (const float x : {10.0F, std::numeric_limits<float>::quiet_NaN(), 4.0F}) {
+    pcl::PointXYZINormal point;
+    point.x = x;
+    point.y = 3.0F;
+    point.z = -1.0F;
+    point.intensity = 2.0F * x;
+    point.normal_z = 1.0F;
+    cloud->push_back(point);
+  }
+  VerticalCorrection<pcl::PointXYZINormal> correction;
+  correction.setInputCloud(cloud);
+  correction.setAngle(0.5);
+  pcl::PointCloud<pcl::PointXYZINormal> corrected;
+  correction.filter(corrected);
+  ASSERT_EQ(corrected.size(), 3U);
+  EXPECT_TRUE(std::isnan(corrected[1].x));
+  for (const std::size_t i : {std::size_t{0}, std::size_t{2}}) {
+    const auto& before = (*cloud)[i];
+    const auto& after = corrected[i];
+    EXPECT_EQ(after.intensity, before.intensity);
+    EXPECT_NEAR(after.getVector3fMap().norm(), before.getVector3fMap().norm(), 1e-4);
+    const double rise =
+        std::atan2(after.z, std::hypot(after.x, after.y)) - std::atan2(before.z, std::hypot(before.x, before.y));
+    EXPECT_NEAR(rise * 180.0 / M_PI, 0.5, 1e-4);
+    // The normal turns with its point: their product stays.
+    EXPECT_NEAR(after.getVector3fMap().dot(after.getNormalVector3fMap()),
+                before.getVector3fMap().dot(before.getNormalVector3fMap()), 1e-4);
+    EXPECT_LT(after.normal_z, 1.0F);
+  }
+  correction.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{2}));
+  correction.filter(corrected);
+  ASSERT_EQ(corrected.size(), 1U);
+  EXPECT_EQ(corrected[0].intensity, 8.0F);
+  correction.setIndices(pcl::make_shared<pcl::Indices>(pcl::Indices{3}));
+  EXPECT_THROW(correction.filter(corrected), std::invalid_argument);
+  EXPECT_THROW(correction.setAngle(std::nan("")), std::invalid_argument);
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 namespace pcl_floam::test {
 namespace {
 
@@ -168,6 +171,29 @@ TEST(KeyframeVoxelMap, PointsComeBackFromItsCloud)
   loaded.insertPoints(FeatureKind::edge, points);
   EXPECT_EQ(loaded.size(FeatureKind::edge), points.size());
   EXPECT_EQ(loaded.size(FeatureKind::plane), 0U);
+}
+
+TEST(KeyframeVoxelMap, TakesAndGivesCloudsOfAnyPointType)
+{
+  pcl::PointCloud<pcl::PointXYZI> scan;
+  for (int i = 0; i < 20; ++i) {
+    pcl::PointXYZI point;
+    point.x = static_cast<float>(i);
+    point.intensity = 3.0F * static_cast<float>(i);
+    scan.push_back(point);
+  }
+  scan[7].y = std::numeric_limits<float>::quiet_NaN();
+  const SE3 world_T_sensor(expSO3(Eigen::Vector3d(0.0, 0.0, M_PI / 2.0)), Eigen::Vector3d(0.0, 0.0, 5.0));
+  KeyframeVoxelMap map;
+  map.addPointCloud(scan, FeatureKind::plane, world_T_sensor);
+  EXPECT_EQ(map.size(FeatureKind::edge), 0U);
+  const auto cloud = map.cloud<pcl::PointXYZI>(FeatureKind::plane);
+  ASSERT_EQ(cloud->size(), 19U);
+  for (const pcl::PointXYZI& point : *cloud) {
+    EXPECT_NEAR(point.x, 0.0, 1e-4);
+    EXPECT_NEAR(point.z, 5.0, 1e-4);
+    EXPECT_NEAR(point.intensity, 3.0 * point.y, 1e-3);
+  }
 }
 
 TEST(KeyframeVoxelMap, SettingsOutOfRangeAreRefused)

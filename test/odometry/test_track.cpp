@@ -89,13 +89,13 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   SpatialSampling sampling;
   std::vector<Sweep> sweeps;
   std::vector<SE3> poses;
-  double side = 0.0;
+  TrackSettings settings;
   for (int k = 0; k < 5; ++k) {
     const Prepared scan = prepared(k);
-    side = side > 0.0 ? side : sampling.sideFor(scan.points, 2000);
+    settings.side = settings.side > 0.0 ? settings.side : sampling.sideFor(scan.points, 2000);
     Sweep sweep;
-    sampling.sample(scan.points, 0.3 * side, sweep.dense);
-    sampling.sample(sweep.dense, side, sweep.sample);
+    sampling.sample(scan.points, 0.3 * settings.side, sweep.dense);
+    sampling.sample(sweep.dense, settings.side, sweep.sample);
     sweep.edges = scan.edges;
     sweeps.push_back(sweep);
     poses.push_back(path(0.5).inverse() * path(k + 0.5));
@@ -103,13 +103,13 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   const Sweep last = sweeps.back();
   sweeps.pop_back();
   poses.pop_back();
-  Track track({}, side);
-  track.begin(sweeps, poses, keyframesAmong(poses, side));
+  Track track(settings);
+  track.begin(sweeps, poses, keyframesAmong(poses, settings));
   EXPECT_TRUE(track.step(last).report.hasConverged());
   EXPECT_LT(error(track.pose().middle, 4), 0.01);
 
   // And backwards, with time running the other way.
-  Track back({}, side);
+  Track back(settings);
   std::vector<Sweep> reversed = {last, sweeps[3]};
   for (Sweep& sweep : reversed) {
     sweep.fraction = -sweep.fraction;

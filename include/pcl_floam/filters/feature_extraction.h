@@ -8,6 +8,9 @@
 
 #include <pcl/filters/filter_indices.h>
 
+#include <algorithm>
+#include <thread>
+
 namespace pcl_floam {
 
 /// Selects the edge points or the plane points of a lidar scan (the paper's "Sensor Model and Feature Extraction").
@@ -64,6 +67,13 @@ public:
   void setScanTimingSource(ScanTimingSource source) { timing_source_ = source; }
   [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
 
+  /// 1 or more; the result does not depend on it. 0 uses all processors. Default: 1.
+  void setNumberOfThreads(unsigned int threads = 0)
+  {
+    threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
+  }
+  [[nodiscard]] int getNumberOfThreads() const { return threads_; }
+
   /// Edges and planes of the input cloud in one pass.
   /// \return false if there is no input cloud or it has no scan lines; then \p features is empty.
   bool extract(FeatureSet& features);
@@ -86,6 +96,7 @@ private:
   SensorModel sensor_;
   ScanLineSource line_source_ = ScanLineSource::automatic;
   ScanTimingSource timing_source_ = ScanTimingSource::automatic;
+  int threads_ = 1;
   ScanLines lines_;
   ScanTiming timing_;
 };

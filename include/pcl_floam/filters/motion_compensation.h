@@ -75,8 +75,6 @@ protected:
   void applyFilter(PointCloud& output) override;
 
 private:
-  void checkIndices() const;
-
   Vector6 twist_ = Vector6::Zero();
   Vector6 acceleration_ = Vector6::Zero();
   PoseInstant instant_ = PoseInstant::end;

@@ -66,6 +66,12 @@ public:
   /// \param threads       >= 1; the map does not depend on it
   void insert(const FeatureSet& features, const SE3& world_T_sensor, int threads = 1);
 
+  /// Adds a cloud to a layer, as one keyframe; points that are not finite are left out.
+  /// \param cloud in the sensor's frame, m, undistorted
+  template <typename PointT>
+  void addPointCloud(const pcl::PointCloud<PointT>& cloud, FeatureKind kind = FeatureKind::plane,
+                     const SE3& world_T_sensor = {}, int threads = 1);
+
   /// Adds points to a layer, as they are in a saved map: each stands for many, and is forgotten only once two scans
   /// have seen through it. World frame, m; points that are not finite are left out.
   /// \param intensities one of each point, or none: then they are 0
@@ -97,19 +103,13 @@ public:
   /// Their intensities, in the same order: means of what fell into each voxel; 0 where scans have none.
   [[nodiscard]] std::vector<float> intensities(FeatureKind kind) const;
 
-  /// As \ref points, as a cloud that PCL can save, show and filter. Single precision.
+  /// As \ref points, as a cloud that PCL can save, show and filter, with intensities where the point type has them.
+  /// Single precision.
   ///
   /// Here and not in the library: a cloud's memory must be freed by code of the flags that allocated it, as Eigen
   /// allocates in another way where -march or -mavx are given.
-  [[nodiscard]] pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(FeatureKind kind) const
-  {
-    auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
-    for (const Eigen::Vector3d& point : points(kind)) {
-      cloud->push_back(
-          pcl::PointXYZ(static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())));
-    }
-    return cloud;
-  }
+  template <typename PointT = pcl::PointXYZ>
+  [[nodiscard]] typename pcl::PointCloud<PointT>::Ptr cloud(FeatureKind kind) const;
 
   [[nodiscard]] const MapParameters& parameters() const;
 
@@ -119,3 +119,5 @@ private:
 };
 
 }  // namespace pcl_floam
+
+#include <pcl_floam/map/impl/keyframe_voxel_map.hpp>

@@ -18,8 +18,8 @@ namespace pcl_floam {
 /// \endcode
 ///
 /// Results are indices into getInputCloud(): the layer's points in the world frame, in m, in the order of
-/// KeyframeVoxelMap::points(), with the other fields of \p PointT left as they are by default. Points that are not
-/// finite have no neighbours.
+/// KeyframeVoxelMap::points(), with intensity if \p PointT has it, and other fields as they are by default. Points that
+/// are not finite have no neighbours.
 ///
 /// It has a KD-tree of its own, although the map can search by itself: PCL's algorithms speak of points by their index
 /// in a cloud, which the map's voxels do not have, and many of them set the input cloud again, with a part of its

@@ -15,13 +15,13 @@ template <typename PointT>
 void FeatureExtraction<PointT>::extractFromInput(FeatureSet& features)
 {
   const CloudView cloud = viewOf(*this->input_);
-  findScanLines(cloud, sensor_, line_source_, lines_);
+  findScanLines(cloud, sensor_, line_source_, lines_, threads_);
   timing_ = findScanTiming(cloud, lines_, timing_source_);
   std::vector<std::uint8_t> selectable;
   if (!this->fake_indices_ && this->indices_) {
     selectable = maskOf(*this->indices_, cloud.size);
   }
-  extractFeatures(cloud, lines_, timing_, parameters_, features, selectable);
+  extractFeatures(cloud, lines_, timing_, parameters_, features, selectable, threads_);
 }
 
 template <typename PointT>

@@ -1,13 +1,11 @@
 #pragma once
 
-// PCL's own templates, too: its libraries hold them for PCL's point types only, not for PointXYZIRT or yours.
+#include <pcl_floam/filters/impl/take_points.hpp>
+
 #include <pcl/common/point_tests.h>
 #include <pcl/point_types.h>
-#include <pcl/filters/impl/filter.hpp>
-#include <pcl/impl/pcl_base.hpp>
 
 #include <stdexcept>
-#include <string>
 
 namespace pcl_floam {
 
@@ -30,17 +28,6 @@ void MotionCompensation<PointT>::setAcceleration(const Vector6& acceleration)
 }
 
 template <typename PointT>
-void MotionCompensation<PointT>::checkIndices() const
-{
-  for (const auto index : *this->indices_) {
-    if (index < 0 || static_cast<std::size_t>(index) >= this->input_->size()) {
-      throw std::invalid_argument("motion compensation: index " + std::to_string(index) + " is none of the cloud's " +
-                                  std::to_string(this->input_->size()) + " points");
-    }
-  }
-}
-
-template <typename PointT>
 void MotionCompensation<PointT>::applyFilter(PointCloud& output)
 {
   const CloudView cloud = viewOf(*this->input_);
@@ -51,12 +38,8 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
     timing_ = findScanTiming(cloud, lines, timing_source_);
   }
 
-  if (this->fake_indices_ || !this->indices_) {
-    output = *this->input_;
-  } else {
-    checkIndices();
-    pcl::copyPointCloud(*this->input_, *this->indices_, output);
-  }
+  const pcl::Indices* indices = this->fake_indices_ ? nullptr : this->indices_.get();
+  takePoints(this->filter_name_, *this->input_, indices, output);
   // Without an acceleration, the velocity of the sweep's middle is that of all instants.
   const SweepMotion motion(twist_, fractionOf(PoseInstant::middle), acceleration_);
   const SE3 reference_T_middle = motion.at(fractionOf(instant_)).inverse();
@@ -68,7 +51,7 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
     if (!pcl::isXYZFinite(point)) {
       continue;
     }
-    const std::size_t source = this->fake_indices_ ? i : static_cast<std::size_t>((*this->indices_)[i]);
+    const std::size_t source = indices == nullptr ? i : static_cast<std::size_t>((*indices)[i]);
     const SE3 reference_T_sensor = reference_T_middle * motion.at(timing_.at(cloud, source));
     point.getVector3fMap() =
         (reference_T_sensor * point.getVector3fMap().template cast<double>()).template cast<float>();

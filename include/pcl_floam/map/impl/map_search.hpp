@@ -5,13 +5,7 @@ namespace pcl_floam {
 template <typename PointT>
 void MapSearch<PointT>::setMap(const KeyframeVoxelMap& map, FeatureKind kind)
 {
-  // Filled here, not by the map: memory of a cloud is to be allocated by code of the flags that will free it.
-  auto cloud = pcl::make_shared<PointCloud>();
-  for (const Eigen::Vector3d& position : map.points(kind)) {
-    PointT point;
-    point.getVector3fMap() = position.cast<float>();
-    cloud->push_back(point);
-  }
+  const typename PointCloud::Ptr cloud = map.cloud<PointT>(kind);
   if (cloud->empty()) {  // PCL's tree cannot be built of it, and says so on the terminal
     pcl::search::Search<PointT>::setInputCloud(cloud);
   } else {

@@ -1,5 +1,5 @@
-/// \file vertical_correction.h
-/// Correction of a sensor's vertical calibration.
+/// \file vertical_angle.h
+/// Correction of a sensor's vertical calibration: the core of \ref pcl_floam::VerticalCorrection.
 #pragma once
 
 #include <pcl_floam/filters/features.h>

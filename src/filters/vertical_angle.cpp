@@ -1,4 +1,4 @@
-#include "filters/vertical_correction.h"
+#include <pcl_floam/filters/vertical_angle.h>
 
 #include "common/multi_version.h"
 

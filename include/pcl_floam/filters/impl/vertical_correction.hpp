@@ -1,0 +1,42 @@
+#pragma once
+
+#include <pcl_floam/filters/impl/take_points.hpp>
+
+#include <pcl/common/point_tests.h>
+#include <pcl/point_types.h>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace pcl_floam {
+
+template <typename PointT>
+void VerticalCorrection<PointT>::setAngle(double degrees)
+{
+  constexpr double kMost = 10.0;
+  if (!(std::abs(degrees) <= kMost)) {
+    throw std::invalid_argument("vertical correction: the angle is not within -10 and 10 degrees");
+  }
+  degrees_ = degrees;
+}
+
+template <typename PointT>
+void VerticalCorrection<PointT>::applyFilter(PointCloud& output)
+{
+  takePoints(this->filter_name_, *this->input_, this->fake_indices_ ? nullptr : this->indices_.get(), output);
+  for (PointT& point : output) {
+    if (!pcl::isXYZFinite(point)) {
+      continue;
+    }
+    const Eigen::Vector3f before = point.getVector3fMap();
+    correctVerticalAngle(degrees_, 1, &point.x, &point.y, &point.z);
+    if constexpr (pcl::traits::has_normal_v<PointT>) {
+      const Eigen::Quaternionf turn = Eigen::Quaternionf::FromTwoVectors(before, point.getVector3fMap());
+      point.getNormalVector3fMap() = turn * point.getNormalVector3fMap();
+    }
+  }
+}
+
+}  // namespace pcl_floam
