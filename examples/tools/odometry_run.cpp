@@ -1,6 +1,7 @@
 #include "odometry_run.h"
 
 #include "interruption.h"
+#include "pose_clock.h"
 #include "progress_bar.h"
 
 #include <algorithm>
@@ -9,41 +10,6 @@
 namespace pcl_floam::tools {
 
 namespace {
-
-/// The poses' times: the scans' stamps, as far as these are known and rise.
-class PoseClock {
-public:
-  /// \param period s, between scans of which nothing tells; 0: that of most rotating lidars
-  PoseClock(double period, std::size_t first_scan)
-      : period_(period > 0.0 ? period : kUsualPeriod), last_((static_cast<double>(first_scan) - 1.0) * period_)
-  {
-  }
-
-  /// \param stamps of scans that follow each other; only the last may be told
-  std::vector<double> timesOf(const std::vector<std::optional<double>>& stamps)
-  {
-    const auto n = static_cast<double>(stamps.size());
-    const std::optional<double> end = stamps.back();
-    const bool is_known = end && (!is_last_known_ || *end > last_);
-    const double step = is_known && is_last_known_ ? (*end - last_) / n : period_;
-    const double before = is_known ? *end - n * step : last_;
-    std::vector<double> times;
-    for (const std::optional<double>& stamp : stamps) {
-      const double even = before + static_cast<double>(times.size() + 1) * step;
-      times.push_back(stamp && *stamp > (times.empty() ? before : times.back()) ? *stamp : even);
-    }
-    last_ = times.back();
-    is_last_known_ = is_last_known_ || is_known;
-    return times;
-  }
-
-private:
-  static constexpr double kUsualPeriod = 0.1;  // s
-
-  double period_;
-  double last_;
-  bool is_last_known_ = false;
-};
 
 bool isRecording(const ScanSource& scans)
 {
