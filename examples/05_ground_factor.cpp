@@ -15,8 +15,8 @@ class LevelGround : public pcl_floam::PoseFactor {
 public:
   void addTo(const pcl_floam::SE3& world_T_sensor, pcl_floam::PoseEquations& equations) const override
   {
-    constexpr double kBump = 0.002;  // m
-    constexpr double kTilt = 0.002;  // rad
+    constexpr double kBump = 0.001;  // m
+    constexpr double kTilt = 0.001;  // rad
     const Eigen::Vector3d up = world_T_sensor.rotation.col(2);
     pcl_floam::Vector6 derivative;
     derivative << 0.0, 0.0, 1.0, 0.0, 0.0, 0.0;
@@ -30,7 +30,9 @@ public:
 
 double largestHeight(const pcl_floam::ScanSource& scans, const pcl_floam::OdometryComponents& components)
 {
-  pcl_floam::OdometryPipeline odometry;  // for a known point type: pcl_floam::Odometry<PointT>
+  pcl_floam::OdometryParameters parameters;
+  parameters.pose_instant = pcl_floam::PoseInstant::middle;  // as factors are asked
+  pcl_floam::OdometryPipeline odometry(parameters);          // for a known point type: pcl_floam::Odometry<PointT>
   odometry.setComponents(components);
   double largest = 0.0;
   pcl::PCLPointCloud2 scan;

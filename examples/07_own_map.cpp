@@ -1,4 +1,4 @@
-// A map of one's own under the odometry: a plain grid of cells, each with the plane through its points.
+// A map of one's own under the odometry: a plain grid of cells, each with the plane or mean of its points.
 //
 //   ./07_own_map SCANS
 #include <pcl_floam/io/scan_source.h>
@@ -37,7 +37,7 @@ public:
   {
     for (std::size_t i = 0; i < count; ++i) {
       const auto cell = cells_.find(cellAt(places[i]));
-      surfaces[i] = cell != cells_.end() && cell->second.count > 5.0 ? planeIn(cell->second) : pcl_floam::Surface();
+      surfaces[i] = cell != cells_.end() && cell->second.count > 5.0 ? surfaceIn(cell->second) : pcl_floam::Surface();
     }
   }
 
@@ -54,21 +54,21 @@ private:
     return {n(p.x()), n(p.y()), n(p.z())};
   }
 
-  pcl_floam::Surface planeIn(const Cell& cell) const
+  /// The plane through a cell's points, or their mean.
+  pcl_floam::Surface surfaceIn(const Cell& cell) const
   {
-    pcl_floam::Surface plane;
-    plane.center = cell.sum / cell.count;
-    const Eigen::Matrix3d covariance = cell.squares / cell.count - plane.center * plane.center.transpose();
+    pcl_floam::Surface surface;
+    surface.center = cell.sum / cell.count;
+    const Eigen::Matrix3d covariance = cell.squares / cell.count - surface.center * surface.center.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-    if (axes.eigenvalues()[0] < 0.05 * axes.eigenvalues()[1]) {
-      plane.kind = pcl_floam::SurfaceKind::plane;
-      plane.direction = axes.eigenvectors().col(0);
-      plane.thickness = std::max(0.0, axes.eigenvalues()[0]);
-      plane.extent = axes.eigenvalues()[1];
-      plane.count = static_cast<std::uint32_t>(cell.count);
-      plane.size = side_;
-    }
-    return plane;
+    const bool is_plane = axes.eigenvalues()[0] < 0.05 * axes.eigenvalues()[1];
+    surface.kind = is_plane ? pcl_floam::SurfaceKind::plane : pcl_floam::SurfaceKind::point;
+    surface.direction = axes.eigenvectors().col(0);
+    surface.thickness = std::max(0.0, axes.eigenvalues()[is_plane ? 0 : 2]);
+    surface.extent = axes.eigenvalues()[1];
+    surface.count = static_cast<std::uint32_t>(cell.count);
+    surface.size = side_;
+    return surface;
   }
 
   double side_;
