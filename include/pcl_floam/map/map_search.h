@@ -2,8 +2,8 @@
 /// A layer of the map as a search structure of PCL's.
 #pragma once
 
+#include <pcl_floam/map/finite_search.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/registration/finite_search.h>
 
 namespace pcl_floam {
 
