@@ -40,8 +40,8 @@ protected:
       const Sweep simulated = simulation.sweep(i);
       pcl_floam::Sweep sweep = sampled(simulated);
       if (i >= kMapped && (i - kMapped) % kBetween == 0) {
-        Track track({}, side_);
-        track.begin(sweeps, poses, keyframesAmong(poses, side_));
+        Track track(settings_);
+        track.begin(sweeps, poses, keyframesAmong(poses, settings_));
         judge(track.step(sweep).report, simulated.world_T_middle);
       }
       sweeps.push_back(std::move(sweep));
@@ -62,10 +62,10 @@ protected:
     scan.findStructure(view, {}, 0.1);
     scan.takeFeatures(view, {});
     scan.takePoints(view, {});
-    side_ = side_ > 0.0 ? side_ : sampling_.sideFor(scan.points, kCells);
+    settings_.side = settings_.side > 0.0 ? settings_.side : sampling_.sideFor(scan.points, kCells);
     pcl_floam::Sweep sweep;
-    sampling_.sample(scan.points, kMapSpacing * side_, sweep.dense);
-    sampling_.sample(sweep.dense, side_, sweep.sample);
+    sampling_.sample(scan.points, kMapSpacing * settings_.side, sweep.dense);
+    sampling_.sample(sweep.dense, settings_.side, sweep.sample);
     scan.takeEdges(sweep.edges);
     sweep.fraction = scan.sweep_fraction;
     return sweep;
@@ -82,7 +82,7 @@ protected:
   }
 
   SpatialSampling sampling_;
-  double side_ = 0.0;
+  TrackSettings settings_;
   double squares_ = 0.0;
   int registrations_ = 0;
 };
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Simulation, CovarianceCalibration,
 TEST_P(CovarianceCalibration, ErrorsAreWithinTheirChiSquareBound)
 {
   for (const std::uint64_t seed : {31U, 32U}) {
-    side_ = 0.0;
+    settings_ = {};
     visit(seed);
   }
   ASSERT_EQ(registrations_, 20);
