@@ -49,6 +49,7 @@ protected:
     RegistrationRun run;
     run.guess = guess;
     run.threads = threads;
+    run.factors = factors_;
     return registerFeatures(scan_, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run,
                             parameters_);
   }
@@ -60,7 +61,40 @@ protected:
   FeatureSet scan_ = featuresOf(toCloud(sweepRoom(room_, lidar_, truth_)));
   KeyframeVoxelMap map_;
   RegistrationParameters parameters_;
+  std::vector<PoseFactor::ConstPtr> factors_;
 };
+
+/// The source's origin is at a place, to 0.1 mm.
+class Place : public PoseFactor {
+public:
+  explicit Place(const Eigen::Vector3d& place) : place_(place) {}
+
+  void addTo(const SE3& target_T_source, PoseEquations& equations) const override
+  {
+    for (int axis = 0; axis < 3; ++axis) {
+      Vector6 along = Vector6::Zero();
+      along[axis] = 1.0;
+      equations.add(target_T_source.translation[axis] - place_[axis], along, 1e-8);
+    }
+  }
+
+private:
+  Eigen::Vector3d place_;
+};
+
+TEST_F(FeatureRegistrationTest, AFactorThatIsSureDecidesByBothSolvers)
+{
+  mapRoom();
+  const Eigen::Vector3d place = truth_.translation + Eigen::Vector3d(0.02, -0.01, 0.015);
+  factors_ = {std::make_shared<Place>(place)};
+  for (const SolverKind solver : {SolverKind::gauss_newton, SolverKind::ceres}) {
+    parameters_.solver = solver;
+    const RegistrationReport report = run(guess_);
+    EXPECT_TRUE(report.hasConverged());
+    EXPECT_LT((report.target_T_source.translation - place).norm(), 1e-3) << toString(solver);
+    EXPECT_LT(angle(report.target_T_source, truth_), 5e-3) << toString(solver);
+  }
+}
 
 TEST_F(FeatureRegistrationTest, RecoversAKnownPose)
 {
