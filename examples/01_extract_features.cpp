@@ -1,6 +1,8 @@
 // Extracts edge and plane features from a PCD scan and saves the scan coloured: edges red, planes green.
 //
 //   ./01_extract_features scan.pcd features.pcd
+// prints
+//   16 scan lines from elevation clusters, 297 edges, 1723 planes
 #include <pcl_floam/filters/feature_extraction.h>
 
 #include <pcl/io/pcd_io.h>

@@ -1,6 +1,8 @@
 // A factor of one's own: a robot on a level floor, whose sensor keeps its height and stays upright.
 //
 //   ./05_ground_factor SCANS
+// prints
+//   up or down by 7.25392 mm, on level ground by 2.66571 mm
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,6 +1,8 @@
 // A factor of one's own that learns from the scans: returns are as bright as the map is where they fall.
 //
 //   ./06_intensity_factor SCANS
+// prints
+//   000019.pcd: tracked, at     1.25808 -0.00105192  0.00371405
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,6 +1,8 @@
 // A map of one's own under the odometry: a plain grid of cells, each with the plane or mean of its points.
 //
 //   ./07_own_map SCANS
+// prints
+//   000019.pcd: tracked, at     1.30458  0.00380472 -0.00184691
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,6 +1,10 @@
 // PCL's filters and this library's in one chain: cut away the robot, undistort the sweep, keep its plane points.
 //
 //   ./08_compose_with_pcl_filters sweep.pcd planes.pcd VX      (VX: forward speed in m per sweep)
+// prints
+//   28800 -> 28800 points
+//   28800 -> 28800 points
+//   28800 -> 1695 points
 #include <pcl_floam/filters/feature_extraction.h>
 #include <pcl_floam/filters/motion_compensation.h>
 
