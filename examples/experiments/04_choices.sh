@@ -36,12 +36,7 @@ choices = [
     ("kernel: Geman-McClure", ["--kernel", "geman-mcclure"]),
     ("no edges", ["--edges-per-sector", "0"]),
     ("an edge counts as a plane", ["--edge-weight", "1"]),
-    ("planes all alike", ["--plane-scatter", "0"]),
-    ("plane ratio 3", ["--plane-ratio", "3"]),
-    ("edges from noise, too", ["--edge-noise-ratio", "0"]),
     ("every scan a keyframe", ["--keyframe-translation", "0", "--keyframe-rotation", "0"]),
-    ("planes from 10 neighbours", ["--plane-neighbors", "10"]),
-    ("line ratio 3 (LOAM's)", ["--line-ratio", "3"]),
 ]
 # The default is LOAM's by features.
 choices += [(f"compensation: {mode}", ["--compensation", mode]) for mode in ("none", "two-stage")]

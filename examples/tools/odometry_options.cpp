@@ -184,14 +184,12 @@ void addFeatureOptions(CLI::App& app, FeatureParameters& p)
   addChoice(app, "--smoothness", p.smoothness,
             {{"vector-sum", SmoothnessKind::vector_sum}, {"mean-of-norms", SmoothnessKind::mean_of_norms}},
             "reading of Eq. 1: LOAM's, or as printed");
-  addNumber(app, "--neighbors-each-side", p.neighbors_each_side, "N", "neighbours in Eq. 1, 2 to 10");
   addNumber(app, "--sectors", p.sectors, "N", "sectors of a scan line, among which features are spread");
   addNumber(app, "--edges-per-sector", p.edges_per_sector, "N", "most edges in one sector of one scan line");
   addNumber(app, "--planes-per-sector", p.planes_per_sector, "N", "most planes in one sector of one scan line");
   addNumber(app, "--min-range", p.min_range, "M", "nearer points are left out");
   addNumber(app, "--max-range", p.max_range, "M", "farther points are left out");
   addNumber(app, "--edge-threshold", p.edge_threshold, "M", "smoothness that an edge must exceed");
-  addNumber(app, "--edge-noise-ratio", p.edge_noise_ratio, "RATIO", "and relative to the median of its scan line");
   addNumber(app, "--edge-bend", p.edge_bend, "RATIO", "and relative to the points' spacing");
   addNumber(app, "--plane-threshold", p.plane_threshold, "M", "smoothness that a plane must not exceed");
 }
@@ -218,27 +216,14 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
       "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
   addNumber(app, "--max-features", p.max_features, "N", "most planes that are registered; edges: a sixth");
   addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
-  addNumber(app, "--plane-scatter", p.plane_scatter, "RATIO",
-            "a plane whose map points scatter so many times more\nthan usual counts half; 0: all count alike");
-  addNumber(app, "--kernel-scale", p.kernel_scale, "M", "smallest scale of the kernel");
   addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");
-  addNumber(app, "--translation-epsilon", p.translation_epsilon, "M", "converged at a step smaller than this");
-  addNumber(app, "--rotation-epsilon", p.rotation_epsilon, "RAD", "and smaller than this");
 }
 
 void addCorrespondenceOptions(CLI::App& app, RegistrationParameters& p)
 {
   app.option_defaults()->group(kCorrespondences);
-  addNumber(app, "--edge-neighbors", p.edge_neighbors, "N", "map points a line is fitted to");
-  addNumber(app, "--plane-neighbors", p.plane_neighbors, "N", "map points a plane is fitted to");
   addNumber(app, "--max-neighbor-distance", p.max_neighbor_distance, "M", "those points are no farther than this");
-  addNumber(app, "--line-ratio", p.line_ratio, "RATIO", "a line's first eigenvalue to its second, at least");
-  addNumber(app, "--plane-ratio", p.plane_ratio, "RATIO", "a plane's second eigenvalue to its third, at least");
-  addNumber(app, "--plane-spread", p.plane_spread, "RATIO", "a plane's second eigenvalue to its first, at least");
   addNumber(app, "--min-correspondences", p.min_correspondences, "N", "with fewer the pose is predicted");
-  addNumber(
-      app, "--weak-threshold", p.weak_threshold, "RATIO",
-      "directions with less information than this keep the\npredicted motion (corridors); 0 follows every direction");
 }
 
 void addMapOptions(CLI::App& app, OdometryParameters& p)

@@ -27,14 +27,12 @@ double shortest(float value)
 Json featuresJson(const FeatureParameters& p)
 {
   return {{"smoothness", toString(p.smoothness)},
-          {"neighbors_each_side", p.neighbors_each_side},
           {"sectors", p.sectors},
           {"edges_per_sector", p.edges_per_sector},
           {"planes_per_sector", p.planes_per_sector},
           {"min_range_m", shortest(p.min_range)},
           {"max_range_m", shortest(p.max_range)},
           {"edge_threshold_m", shortest(p.edge_threshold)},
-          {"edge_noise_ratio", shortest(p.edge_noise_ratio)},
           {"edge_bend", shortest(p.edge_bend)},
           {"plane_threshold_m", shortest(p.plane_threshold)}};
 }
@@ -45,21 +43,11 @@ Json registrationJson(const RegistrationParameters& p)
           {"weights", toString(p.weights)},
           {"weight_normalization", toString(p.weight_normalization)},
           {"edge_weight", p.edge_weight},
-          {"plane_scatter", p.plane_scatter},
           {"kernel", toString(p.kernel)},
-          {"kernel_scale_m", p.kernel_scale},
           {"max_iterations", p.max_iterations},
-          {"translation_epsilon_m", p.translation_epsilon},
-          {"rotation_epsilon_rad", p.rotation_epsilon},
-          {"edge_neighbors", p.edge_neighbors},
-          {"plane_neighbors", p.plane_neighbors},
           {"max_neighbor_distance_m", p.max_neighbor_distance},
-          {"line_ratio", p.line_ratio},
-          {"plane_ratio", p.plane_ratio},
-          {"plane_spread", p.plane_spread},
           {"max_features", p.max_features},
           {"min_correspondences", p.min_correspondences},
-          {"weak_threshold", p.weak_threshold},
           {"locked_x_y_z_rx_ry_rz", p.locked}};
 }
 

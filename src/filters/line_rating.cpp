@@ -12,6 +12,12 @@ namespace pcl_floam {
 
 namespace {
 
+/// The paper's "5 points along the clockwise and counterclockwise".
+constexpr int kNeighborsEachSide = 5;
+/// An edge needs a smoothness of so many times the median of its scan line, which is two thirds of the range noise on
+/// smooth surfaces: without it noise of 5 cm makes edges everywhere.
+constexpr float kNoiseRatio = 5.0F;
+
 /// Sorts a line's points into those sharp enough for edges and those smooth enough for planes.
 PCL_FLOAM_MULTI_VERSION
 void sortByUse(std::size_t count, const float* sigma, const std::int32_t* unfit, float edge_threshold,
@@ -30,7 +36,7 @@ bool LineRating::rate(const CloudView& cloud, const ScanLines& lines, std::size_
                       const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable)
 {
   points.gather(cloud, lines, m);
-  const LineNeighborhood neighborhood = neighborhoodIn(points, parameters.neighbors_each_side, sample_);
+  const LineNeighborhood neighborhood = neighborhoodIn(points, kNeighborsEachSide, sample_);
   each_side = neighborhood.each_side;
   if (points.size() <= 2 * each_side) {
     return false;
@@ -68,7 +74,7 @@ float LineRating::noiseThreshold(const FeatureParameters& parameters)
       sample_.push_back(sigma[n]);
     }
   }
-  return std::max(parameters.edge_threshold, parameters.edge_noise_ratio * medianOf(sample_));
+  return std::max(parameters.edge_threshold, kNoiseRatio * medianOf(sample_));
 }
 
 }  // namespace pcl_floam

@@ -20,8 +20,7 @@ struct FeatureKindProblem {
   const std::vector<Feature>& features;
   const std::vector<double>& weights;
   const NeighborSearch& search;
-  int neighbors;
-  std::optional<Factor> (*fit)(const Neighbors&, const RegistrationParameters&);
+  std::optional<Factor> (*fit)(const Neighbors&);
 };
 
 /// The features whose neighbours are searched at one time.
@@ -37,15 +36,14 @@ public:
   }
 
   /// Links the features asked for to what is found around them.
-  void link(const FeatureKindProblem& kind, const RegistrationParameters& parameters, double search_radius,
-            std::vector<Correspondence>& correspondences)
+  void link(const FeatureKindProblem& kind, double search_radius, std::vector<Correspondence>& correspondences)
   {
-    kind.search.nearestOfEach(query_.data(), count_, kind.neighbors, search_radius, found_.data());
+    kind.search.nearestOfEach(query_.data(), count_, kFitNeighbors, search_radius, found_.data());
     for (std::size_t n = 0; n < count_; ++n) {
       Correspondence& correspondence = correspondences[feature_[n]];
       correspondence.weight = 0.0;
       correspondence.searched_at = correspondence.point;
-      const auto fit = found_[n].count < kind.neighbors ? std::nullopt : kind.fit(found_[n], parameters);
+      const auto fit = found_[n].count < kFitNeighbors ? std::nullopt : kind.fit(found_[n]);
       if (fit) {
         correspondence.factor = *fit;
         correspondence.factor.center += correspondence.point;
@@ -88,7 +86,7 @@ void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem&
           batch.ask(n * stride, problem.origin + correspondence.point);
         }
       }
-      batch.link(kind, problem.parameters, search_radius, correspondences);
+      batch.link(kind, search_radius, correspondences);
     }
   }
 }
@@ -100,13 +98,11 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
                          Correspondences& correspondences)
 {
-  const RegistrationParameters& parameters = problem.parameters;
-  const FeatureKindProblem edges{source.edges, edge_weights, *problem.target.edges, parameters.edge_neighbors, fitLine};
-  const FeatureKindProblem planes{source.planes, plane_weights, *problem.target.planes, parameters.plane_neighbors,
-                                  fitPlane};
+  const FeatureKindProblem edges{source.edges, edge_weights, *problem.target.edges, fitLine};
+  const FeatureKindProblem planes{source.planes, plane_weights, *problem.target.planes, fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
-  weighByScatter(plane_weights, parameters.plane_scatter, correspondences.planes);
+  weighByScatter(plane_weights, kPlaneScatter, correspondences.planes);
 }
 
 }  // namespace pcl_floam

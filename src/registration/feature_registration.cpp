@@ -23,6 +23,11 @@ constexpr double kNear = 10.0;
 /// An edge costs what a plane does, and says less.
 constexpr std::size_t kPlanesPerEdge = 6;
 
+/// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
+/// weak: the guess is kept along them. What only the noise of the planes' normals seems to tell is taken off. Well
+/// constrained directions have 0.1 to 1, the way along a corridor with doors 0.001.
+constexpr double kWeak = 2e-4;
+
 /// At most so many of the features, evenly taken in their order.
 std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
 {
@@ -54,7 +59,7 @@ public:
   FeaturePoseEstimation(const FeatureSet& source, const FeatureTarget& target, const RegistrationRun& run,
                         const RegistrationParameters& parameters)
       : source_(source),
-        on_iteration_(run.on_iteration),
+        run_(run),
         factors_{run.factors, SE3()},
         model_(localModel(run)),
         problem_{target, parameters, run.guess.translation, run.threads},
@@ -107,12 +112,12 @@ private:
   /// One iteration of the pose estimation: fresh correspondences, one step. \return true when it is over
   bool iterate()
   {
-    if (on_iteration_) {
-      on_iteration_(pose());
+    if (run_.on_iteration) {
+      run_.on_iteration(pose());
     }
     findCorrespondences(problem_, source_, edge_weights_, plane_weights_, trajectory_, search_radius_, stride_,
                         correspondences_);
-    const KernelScales scales = adaptKernelScales(problem_, correspondences_);
+    const KernelScales scales = adaptKernelScales(correspondences_);
     equations_ = reducedToPose(buildNormalEquations(problem_, correspondences_, scales), model_);
     const PoseEquations besides = this->besides();
     equations_.information += besides.information;
@@ -131,7 +136,7 @@ private:
 
   [[nodiscard]] InformationAnalysis analysis() const
   {
-    return InformationAnalysis(equations_, problem_.parameters.weak_threshold, freeMotions(problem_.parameters.locked));
+    return InformationAnalysis(equations_, kWeak, freeMotions(problem_.parameters.locked));
   }
 
   /// What else is known of the pose, as so many residuals of weight 1.
@@ -167,10 +172,10 @@ private:
       search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
       correspondences_ = Correspondences();  // they were found within the wider radius
     }
-    const bool small = step.head<3>().norm() < problem_.parameters.translation_epsilon &&
-                       step.tail<3>().norm() < problem_.parameters.rotation_epsilon;
-    const bool near = step.head<3>().norm() < kNear * problem_.parameters.translation_epsilon &&
-                      step.tail<3>().norm() < kNear * problem_.parameters.rotation_epsilon;
+    const bool small =
+        step.head<3>().norm() < run_.translation_epsilon && step.tail<3>().norm() < run_.rotation_epsilon;
+    const bool near = step.head<3>().norm() < kNear * run_.translation_epsilon &&
+                      step.tail<3>().norm() < kNear * run_.rotation_epsilon;
     if (stride_ > 1) {
       stride_ = near && !searched_wide ? 1 : stride_;
       return false;
@@ -203,12 +208,12 @@ private:
     report_.information = equations_.information;
     report_.sweep_twist = trajectory_.twist();
     report_.covariance = analysis.covariance(featureVariance(equations_));
-    report_.weak_directions = analysis.weakDirections(problem_.parameters.weak_threshold);
+    report_.weak_directions = analysis.weakDirections(kWeak);
     return report_;
   }
 
   const FeatureSet& source_;
-  const std::function<void(const SE3&)>& on_iteration_;
+  const RegistrationRun& run_;
   PoseFactors factors_;
   SweepModel model_;
   RegistrationProblem problem_;

@@ -20,23 +20,22 @@ PointMoments momentsOf(const Neighbors& neighbors)
 
 }  // namespace
 
-std::optional<Factor> fitLine(const Neighbors& neighbors, const RegistrationParameters& parameters)
+std::optional<Factor> fitLine(const Neighbors& neighbors)
 {
   const PointMoments points = momentsOf(neighbors);
   const PrincipalAxes axes = points.axes();
-  if (!(axes.variance[2] > parameters.line_ratio * axes.variance[1]) || !(axes.variance[2] > 0.0)) {
+  if (!(axes.variance[2] > kLineRatio * axes.variance[1]) || !(axes.variance[2] > 0.0)) {
     return std::nullopt;
   }
   return Factor{FeatureKind::edge, points.mean(), axes.direction.col(2)};
 }
 
-std::optional<Factor> fitPlane(const Neighbors& neighbors, const RegistrationParameters& parameters)
+std::optional<Factor> fitPlane(const Neighbors& neighbors)
 {
   const PointMoments points = momentsOf(neighbors);
   const PrincipalAxes axes = points.axes();
   const double across = std::max(0.0, axes.variance[0]);
-  if (!(axes.variance[1] > parameters.plane_ratio * across) ||
-      !(axes.variance[1] > parameters.plane_spread * axes.variance[2])) {
+  if (!(axes.variance[1] > kPlaneRatio * across) || !(axes.variance[1] > kPlaneSpread * axes.variance[2])) {
     return std::nullopt;
   }
   Factor plane{FeatureKind::plane, points.mean(), axes.direction.col(0), across};

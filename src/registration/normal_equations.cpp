@@ -81,9 +81,8 @@ private:
 
 }  // namespace
 
-KernelScales adaptKernelScales(const RegistrationProblem& problem, const Correspondences& correspondences)
+KernelScales adaptKernelScales(const Correspondences& correspondences, double smallest)
 {
-  const double smallest = problem.parameters.kernel_scale;
   return {scaleOf(correspondences.edges, smallest), scaleOf(correspondences.planes, smallest)};
 }
 

@@ -18,10 +18,12 @@ struct KernelScales {
   double plane = 0.0;
 };
 
-/// The kernel's scale follows the spread of the residuals, measured by their median, but does not go below the
-/// parameters' `kernel_scale`.
-[[nodiscard]] KernelScales adaptKernelScales(const RegistrationProblem& problem,
-                                             const Correspondences& correspondences);
+/// Below it no residual is an outlier: maps are no better, m.
+inline constexpr double kSmallestKernelScale = 0.05;
+
+/// The kernel's scale follows the spread of the residuals, measured by their median.
+[[nodiscard]] KernelScales adaptKernelScales(const Correspondences& correspondences,
+                                             double smallest = kSmallestKernelScale);
 
 /// Sums over all correspondences.
 ///

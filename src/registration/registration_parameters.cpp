@@ -57,20 +57,10 @@ void validate(const RegistrationParameters& p)
 {
   const ParameterCheck check("registration");
   check.range("max_iterations", p.max_iterations, 1, 1000);
-  check.atLeast("translation_epsilon", p.translation_epsilon, 0.0);
-  check.atLeast("rotation_epsilon", p.rotation_epsilon, 0.0);
-  check.range("edge_neighbors", p.edge_neighbors, 3, kMaxNeighbors);
-  check.range("plane_neighbors", p.plane_neighbors, 4, kMaxNeighbors);
   check.above("max_neighbor_distance", p.max_neighbor_distance, 0.0);
-  check.above("line_ratio", p.line_ratio, 1.0);
-  check.above("plane_ratio", p.plane_ratio, 1.0);
-  check.range("plane_spread", p.plane_spread, 0.0, 0.999);
   check.above("edge_weight", p.edge_weight, 0.0);
-  check.atLeast("plane_scatter", p.plane_scatter, 0.0);
-  check.above("kernel_scale", p.kernel_scale, 0.0);
   check.range("max_features", p.max_features, 100, 1000000);
   check.range("min_correspondences", p.min_correspondences, 6, 1000000);
-  check.range("weak_threshold", p.weak_threshold, 0.0, 0.1);
 }
 
 }  // namespace pcl_floam

@@ -74,8 +74,7 @@ std::vector<Eigen::Vector3d> planeQueries(const StageInput& input)
 void search(const NeighborSearch& layer, const std::vector<Eigen::Vector3d>& queries, std::vector<Neighbors>& found)
 {
   const RegistrationParameters defaults;
-  layer.nearestOfEach(queries.data(), queries.size(), defaults.plane_neighbors, defaults.max_neighbor_distance,
-                      found.data());
+  layer.nearestOfEach(queries.data(), queries.size(), kFitNeighbors, defaults.max_neighbor_distance, found.data());
   gb::DoNotOptimize(found.data());
 }
 
@@ -126,12 +125,12 @@ void registerMapStages(const std::string& name, const SharedInput& input)
   search(input->map.search(FeatureKind::plane), queries, found);
   add(name, "1000 plane fits", [input, found] {
     for (const Neighbors& neighbors : found) {
-      gb::DoNotOptimize(fitPlane(neighbors, input->parameters.registration));
+      gb::DoNotOptimize(fitPlane(neighbors));
     }
   });
   add(name, "1000 line fits", [input, found] {
     for (const Neighbors& neighbors : found) {
-      gb::DoNotOptimize(fitLine(neighbors, input->parameters.registration));
+      gb::DoNotOptimize(fitLine(neighbors));
     }
   });
 }
@@ -147,8 +146,8 @@ void registerRegistrationStages(const std::string& name, const SharedInput& inpu
   const std::vector<double> plane_weights(input->features.planes.size(), 1.0);
   findCorrespondences(*problem, input->features, edge_weights, plane_weights, trajectory, 1.0, 1, *links);
   add(name, "one Gauss-Newton step, all features", [input, target, problem, links] {
-    const NormalEquations equations = buildNormalEquations(*problem, *links, adaptKernelScales(*problem, *links));
-    gb::DoNotOptimize(InformationAnalysis(equations, problem->parameters.weak_threshold).step());
+    const NormalEquations equations = buildNormalEquations(*problem, *links, adaptKernelScales(*links));
+    gb::DoNotOptimize(InformationAnalysis(equations).step());
   });
   add(name, "registration", [input, target] {
     gb::DoNotOptimize(registerFeatures(input->features, *target, runOf(*input), input->parameters.registration));

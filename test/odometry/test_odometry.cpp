@@ -313,7 +313,7 @@ TEST(Odometry, SettingsOutOfRangeAreRefused)
   parameters.map.horizon = -1.0;
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
   parameters = defaults();
-  parameters.registration.kernel_scale = std::numeric_limits<double>::quiet_NaN();
+  parameters.registration.edge_weight = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
 }
 

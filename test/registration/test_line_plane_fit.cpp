@@ -30,7 +30,7 @@ TEST(LineFit, FindsALine)
   for (int i = 0; i < 5; ++i) {
     points.push_back(through + (i - 2.0) * 0.2 * direction + randomTwist(random, 0.01, 0.0).head<3>());
   }
-  const auto line = fitLine(neighborsAt(points), RegistrationParameters());
+  const auto line = fitLine(neighborsAt(points));
   ASSERT_TRUE(line);
   EXPECT_NEAR(std::abs(line->direction.dot(direction)), 1.0, 1e-2);
   EXPECT_NEAR(line->direction.norm(), 1.0, 1e-9);
@@ -48,7 +48,7 @@ TEST(PlaneFit, FindsAPlane)
     offset -= normal * normal.dot(offset);
     points.push_back(through + offset);
   }
-  const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+  const auto plane = fitPlane(neighborsAt(points));
   ASSERT_TRUE(plane);
   EXPECT_NEAR(std::abs(plane->direction.dot(normal)), 1.0, 1e-6);
   EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
@@ -57,7 +57,6 @@ TEST(PlaneFit, FindsAPlane)
 TEST(PlaneFit, IsThatOfTheEigenvectors)
 {
   std::mt19937 random(9);
-  RegistrationParameters parameters;
   int planes = 0;
   for (int n = 0; n < 2000; ++n) {
     const Eigen::Matrix3d axes = expSO3(randomTwist(random, 0.0, 2.0).tail<3>());
@@ -77,9 +76,8 @@ TEST(PlaneFit, IsThatOfTheEigenvectors)
     offsets.colwise() -= mean;
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(offsets * offsets.transpose() / neighbors.count);
     const Eigen::Vector3d& values = solver.eigenvalues();
-    const bool is_plane =
-        values[1] > parameters.plane_ratio * values[0] && values[1] > parameters.plane_spread * values[2];
-    const auto plane = fitPlane(neighbors, parameters);
+    const bool is_plane = values[1] > kPlaneRatio * values[0] && values[1] > kPlaneSpread * values[2];
+    const auto plane = fitPlane(neighbors);
     ASSERT_EQ(plane.has_value(), is_plane) << values.transpose();
     if (!plane) {
       continue;
@@ -111,7 +109,7 @@ TEST(PlaneFit, ItsVarianceIsTheScatterAcrossAndGrowsBeside)
     for (Eigen::Vector3d& point : points) {
       point.x() -= aside;
     }
-    const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+    const auto plane = fitPlane(neighborsAt(points));
     return plane ? plane->variance : -1.0;
   };
   const double across = 4.0 * 0.03 * 0.03 / 5.0;
@@ -131,7 +129,7 @@ TEST(PlaneFit, ItsTiltIsThatOfNormalsFittedToNoise)
     for (const auto& [x, y] : {std::pair(0.2, 0.1), {0.2, -0.1}, {-0.2, 0.1}, {-0.2, -0.1}, {0.0, 0.0}}) {
       points.emplace_back(x, y, noise(random));
     }
-    const auto plane = fitPlane(neighborsAt(points), RegistrationParameters());
+    const auto plane = fitPlane(neighborsAt(points));
     if (plane) {
       const Eigen::Vector3d normal = plane->direction / plane->direction.z();
       seen += normal.head<2>().cwiseAbs2();
@@ -147,21 +145,17 @@ TEST(PlaneFit, ItsTiltIsThatOfNormalsFittedToNoise)
 
 TEST(LineFit, RefusesAPlane)
 {
-  EXPECT_FALSE(
-      fitLine(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0}}), RegistrationParameters()));
+  EXPECT_FALSE(fitLine(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0}})));
 }
 
 TEST(PlaneFit, RefusesALine)
 {
   // Any plane through the line would do: the normal is noise.
-  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}}),
-                        RegistrationParameters()));
+  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {2, 0.001, 0}, {3, 0, 0}, {4, -0.001, 0}, {5, 0, 0}})));
 }
 
-TEST(PlaneFit, ALineGivesNoInfinitiesAlsoWhereAnySpreadWillDo)
+TEST(PlaneFit, ALineGivesNoInfinities)
 {
-  RegistrationParameters parameters;
-  parameters.plane_spread = 0.0;
   std::mt19937 random(11);
   for (int n = 0; n < 1000; ++n) {
     const Eigen::Vector3d direction = randomTwist(random, 1.0, 0.0).head<3>();
@@ -169,7 +163,7 @@ TEST(PlaneFit, ALineGivesNoInfinitiesAlsoWhereAnySpreadWillDo)
     for (int i = 0; i < 5; ++i) {
       points.push_back((i - 2.3) * direction);
     }
-    const auto plane = fitPlane(neighborsAt(points), parameters);
+    const auto plane = fitPlane(neighborsAt(points));
     if (plane) {  // by the coordinates' rounding
       EXPECT_TRUE(std::isfinite(plane->variance) && plane->tilt[0].allFinite() && plane->tilt[1].allFinite());
     }
@@ -178,33 +172,27 @@ TEST(PlaneFit, ALineGivesNoInfinitiesAlsoWhereAnySpreadWillDo)
 
 TEST(PlaneFit, RefusesABall)
 {
-  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}),
-                        RegistrationParameters()));
+  EXPECT_FALSE(fitPlane(neighborsAt({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}})));
 }
 
 TEST(LinePlaneFit, RefuseOnePointManyTimes)
 {
   const Neighbors same = neighborsAt({{1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}, {1, 2, 3}});
-  EXPECT_FALSE(fitLine(same, RegistrationParameters()));
-  EXPECT_FALSE(fitPlane(same, RegistrationParameters()));
+  EXPECT_FALSE(fitLine(same));
+  EXPECT_FALSE(fitPlane(same));
 }
 
 TEST(LinePlaneFit, TheRatiosDecide)
 {
-  // Extents 2 : 1 : 0.25 along the axes, so eigenvalues 4 : 1 : 1/16.
-  const Neighbors slab = neighborsAt({{2, 0, 0}, {-2, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 0.25}, {0, 0, -0.25}});
-  RegistrationParameters parameters;
-  parameters.line_ratio = 3.9;
-  parameters.plane_ratio = 15.9;
-  EXPECT_TRUE(fitLine(slab, parameters));
-  EXPECT_TRUE(fitPlane(slab, parameters));
-  parameters.line_ratio = 4.1;
-  parameters.plane_ratio = 16.1;
-  EXPECT_FALSE(fitLine(slab, parameters));
-  EXPECT_FALSE(fitPlane(slab, parameters));
-  parameters.plane_ratio = 15.9;
-  parameters.plane_spread = 0.26;
-  EXPECT_FALSE(fitPlane(slab, parameters));
+  const auto slab = [](double length, double width, double height) {
+    return neighborsAt(
+        {{length, 0, 0}, {-length, 0, 0}, {0, width, 0}, {0, -width, 0}, {0, 0, height}, {0, 0, -height}});
+  };
+  for (const double little : {0.99, 1.01}) {  // eigenvalues are as the squares
+    EXPECT_EQ(fitLine(slab(std::sqrt(kLineRatio) * little, 1.0, 0.5)).has_value(), little > 1.0);
+    EXPECT_EQ(fitPlane(slab(1.5, 1.0, 1.0 / (std::sqrt(kPlaneRatio) * little))).has_value(), little > 1.0);
+    EXPECT_EQ(fitPlane(slab(1.0 / (std::sqrt(kPlaneSpread) * little), 1.0, 0.01)).has_value(), little > 1.0);
+  }
 }
 
 }  // namespace

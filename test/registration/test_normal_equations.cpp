@@ -231,9 +231,8 @@ TEST_F(NormalEquationsTest, NewtonStepsAndCeresReachTheSameMotionDuringTheSweep)
 
 TEST_F(NormalEquationsTest, KernelScaleFollowsTheResiduals)
 {
-  parameters_.kernel_scale = 0.01;
   const auto scalesAt = [&](double noise) {
-    return adaptKernelScales(problem_, Scan(trajectory_, noise).along(trajectory_));
+    return adaptKernelScales(Scan(trajectory_, noise).along(trajectory_), 0.01);
   };
   EXPECT_NEAR(scalesAt(1.0).edge / scalesAt(0.1).edge, 10.0, 1e-3);
   EXPECT_NEAR(scalesAt(1.0).plane / scalesAt(0.1).plane, 10.0, 1e-3);
@@ -243,7 +242,6 @@ TEST_F(NormalEquationsTest, KernelScaleFollowsTheResiduals)
 
 TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
 {
-  parameters_.kernel_scale = 0.01;
   Correspondences correspondences;
   for (const double residual : {0.9, 0.01, 0.02, -0.8, 0.1, 0.7, -0.03}) {
     Correspondence c;
@@ -252,7 +250,7 @@ TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
     c.weight = 1.0;
     correspondences.planes.push_back(c);
   }
-  EXPECT_NEAR(adaptKernelScales(problem_, correspondences).plane, 3.0 * 1.4826 * 0.1, 1e-9);
+  EXPECT_NEAR(adaptKernelScales(correspondences, 0.01).plane, 3.0 * 1.4826 * 0.1, 1e-9);
 }
 
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -65,6 +66,18 @@ inline std::string roomScan(double x, double y)
     }
   }
   return bytes;
+}
+
+/// What of a scan lies on the floor: nothing tells of the way along it.
+inline std::string floorOf(const std::string& scan)
+{
+  std::string floor;
+  for (std::size_t i = 0; i + 16 <= scan.size(); i += 16) {
+    float z = 0.0F;
+    std::memcpy(&z, scan.data() + i + 8, sizeof(z));
+    floor += z < -1.69F ? scan.substr(i, 16) : std::string();
+  }
+  return floor;
 }
 
 }  // namespace pcl_floam::test

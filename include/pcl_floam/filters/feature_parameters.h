@@ -17,9 +17,6 @@ enum class SmoothnessKind : std::uint8_t {
 /// Settings of \ref FeatureExtraction.
 struct FeatureParameters {
   SmoothnessKind smoothness = SmoothnessKind::vector_sum;
-  /// 2 to 10; the paper's "5 points along the clockwise and counterclockwise". Where a scan line's points are more than
-  /// 0.43 degrees apart, as where most returns are missing, fewer are used, down to 2, within 2.9 degrees.
-  int neighbors_each_side = 5;
   int sectors = 6;             ///< parts of a scan line among which the features are spread; 1 to 64
   int edges_per_sector = 4;    ///< most edges in one sector of one scan line; 0 to 100
   int planes_per_sector = 20;  ///< most planes in one sector of one scan line; 0 to 1000
@@ -27,10 +24,6 @@ struct FeatureParameters {
   float max_range = 120.0F;    ///< m; > min_range
   /// m; an edge needs a smoothness of more than this, above the range noise. Reasonable: 0.02 to 0.1
   float edge_threshold = 0.1F;
-  /// And of more than this times the median smoothness of its scan line, which is two thirds of the range noise on
-  /// smooth surfaces: without it noise of 5 cm makes edges everywhere. For the vector sum; >= 0, 0: off.
-  /// Reasonable: 3 to 8
-  float edge_noise_ratio = 5.0F;
   /// An edge needs a smoothness of more than this times the mean distance to its neighbours: 0 on a line,
   /// 0.7 at a right-angled corner, 1 at the end of a surface.
   float edge_bend = 0.35F;

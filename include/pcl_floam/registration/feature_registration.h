@@ -29,6 +29,8 @@ struct RegistrationRun {
   /// down to `max_neighbor_distance`. 0 uses the latter throughout.
   double guess_uncertainty = 0.0;
   int threads = 1;
+  double translation_epsilon = 2e-3;          ///< m; converged when a step is smaller than this ...
+  double rotation_epsilon = 4e-4;             ///< ... and smaller than this, in rad
   SweepModel sweep;                           ///< default: the source is not distorted
   std::vector<PoseFactor::ConstPtr> factors;  ///< what else is known of the pose
   /// Called before each iteration with the present pose, if set.

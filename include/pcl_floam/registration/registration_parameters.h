@@ -40,14 +40,7 @@ inline constexpr DegreesOfFreedom kPlanarMotion = {false, false, true, true, tru
 struct RegistrationParameters {
   SolverKind solver = SolverKind::gauss_newton;
   int max_iterations = 30;             ///< each with fresh correspondences; >= 1
-  double translation_epsilon = 2e-3;   ///< m; converged when a step is smaller than this ...
-  double rotation_epsilon = 4e-4;      ///< ... and smaller than this, in rad
-  int edge_neighbors = 5;              ///< map points a line is fitted to; 3 to 20
-  int plane_neighbors = 5;             ///< map points a plane is fitted to; 4 to 20
   double max_neighbor_distance = 1.0;  ///< m; the farthest of the neighbours must be nearer. Reasonable: 0.5 to 3
-  double line_ratio = 8.0;             ///< a line's largest eigenvalue must exceed this times the second; > 1
-  double plane_ratio = 20.0;           ///< a plane's second eigenvalue must exceed this times the smallest; > 1
-  double plane_spread = 0.02;          ///< and must exceed this times the largest: no plane through a line; [0, 1)
   WeightScheme weights = WeightScheme::uniform;
   WeightNormalization weight_normalization = WeightNormalization::mean_one;
   /// What an edge counts beside a plane; > 0. Reasonable: 0.03 to 0.5. Edges are centimetres off, by the noise and the
@@ -55,21 +48,11 @@ struct RegistrationParameters {
   /// roads there is little else. The paper counts each as 1 (Eq. 10). More holds in
   /// corridors, less on highways.
   double edge_weight = 0.12;
-  /// A plane counts half if its map points' standard deviation across it is this times the median of the scan's planes,
-  /// and less if it is more; beside those points it is taken to grow. >= 0, 0: all count alike. Reasonable: 1 to 8.
-  double plane_scatter = 2.0;
-  RobustKernel kernel = RobustKernel::cauchy;
-  /// Smallest scale of the robust kernel in m; above it the scale follows the residuals' spread.
-  double kernel_scale = 0.05;
+  RobustKernel kernel = RobustKernel::cauchy;  ///< its scale follows the residuals' spread
   /// Most planes that are registered, evenly taken from those of the scan, and a sixth as many edges; >= 100. The
   /// time grows with them, and errors where planes are near fall a little.
   int max_features = 1000;
   int min_correspondences = 20;  ///< fewer give no pose; >= 6
-  /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
-  /// weak: the guess is kept along them. What only the noise of the planes' normals seems to tell is taken off. Well
-  /// constrained directions have 0.1 to 1, the way along a corridor with doors 0.001. [0, 0.1]; 0 follows every
-  /// direction.
-  double weak_threshold = 2e-4;
   /// Degrees of freedom that keep the guess's value; none by default. Their covariance is zero. Exact for
   /// \ref kPlanarMotion, for all translations and for all rotations; else to second order of the correction.
   DegreesOfFreedom locked = {};

@@ -63,13 +63,6 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   RegistrationParameters parameters = parameters_;
   parameters.max_iterations = iterationLimit();
   parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
-  if (this->transformation_epsilon_ > 0.0) {
-    parameters.translation_epsilon = std::min(parameters.translation_epsilon, std::sqrt(this->transformation_epsilon_));
-  }
-  if (this->transformation_rotation_epsilon_ > 0.0) {
-    parameters.rotation_epsilon =
-        std::min(parameters.rotation_epsilon, std::acos(std::min(1.0, this->transformation_rotation_epsilon_)));
-  }
   return parameters;
 }
 
@@ -102,6 +95,13 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   RegistrationRun run;
   run.guess = roughPose(guess);
   run.threads = threads_;
+  if (this->transformation_epsilon_ > 0.0) {
+    run.translation_epsilon = std::min(run.translation_epsilon, std::sqrt(this->transformation_epsilon_));
+  }
+  if (this->transformation_rotation_epsilon_ > 0.0) {
+    run.rotation_epsilon =
+        std::min(run.rotation_epsilon, std::acos(std::min(1.0, this->transformation_rotation_epsilon_)));
+  }
   SE3 last = run.guess;
   run.on_iteration = [this, &last](const SE3& target_T_source) {
     last = target_T_source;
