@@ -84,7 +84,7 @@ void Hypotheses::updateMaps(const Sweep& sweep)
 
 void Hypotheses::giveUp(double behind, Rivals rivals)
 {
-  std::stable_sort(all_.begin(), all_.end(), isLikelier);
+  putFirst(Preference::likeliest);
   for (std::size_t i = all_.size(); i-- > 1;) {
     const auto here = all_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == here->direction(); };
@@ -96,9 +96,14 @@ void Hypotheses::giveUp(double behind, Rivals rivals)
   }
 }
 
-void Hypotheses::keepOneOfEachDirection(Preference preference)
+void Hypotheses::putFirst(Preference preference)
 {
   std::stable_sort(all_.begin(), all_.end(), preference == Preference::likeliest ? isLikelier : hasMovedLess);
+}
+
+void Hypotheses::keepOneOfEachDirection(Preference preference)
+{
+  putFirst(preference);
   std::vector<Hypothesis> kept;
   for (Hypothesis& hypothesis : all_) {
     if (std::none_of(kept.begin(), kept.end(),

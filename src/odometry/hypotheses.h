@@ -24,7 +24,7 @@ struct Hypothesis {
   [[nodiscard]] double moved() const;  ///< m, from the first sweep on
 };
 
-/// Which of those of one direction of time is kept.
+/// Which is the best one.
 enum class Preference : std::uint8_t { likeliest, least_motion };
 
 /// The likeliest first. Where nothing tells which way time runs in a sweep, each way has its tracks.
@@ -49,6 +49,9 @@ public:
   /// direction of time.
   /// \param rivals with which each is compared: motions within its direction of time
   void giveUp(double behind, Rivals rivals);
+
+  /// \ref front becomes the one that is preferred.
+  void putFirst(Preference preference);
 
   /// Their evidence begins anew, so that what is left to tell is the direction.
   void keepOneOfEachDirection(Preference preference);

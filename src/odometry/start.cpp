@@ -92,6 +92,9 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   }
   hypotheses.giveUp(hopeless(sweep), Rivals::motions);
   kept_.push_back(sweep);
+  if (leavesNoTrace(hypotheses)) {
+    hypotheses.putFirst(Preference::least_motion);
+  }
   return true;
 }
 

@@ -143,8 +143,9 @@ std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, con
 double featureVariance(const NormalEquations& equations)
 {
   constexpr double kFeaturesPerIndependentOne = 7.0;
+  constexpr double kLeast = 1e-6;  // m^2: no map is better than to a millimetre, however well it fits
   const double mean_weight = equations.given_weight / (equations.edges + equations.planes);
-  return kFeaturesPerIndependentOne * mean_weight * equations.residualVariance();
+  return kFeaturesPerIndependentOne * mean_weight * std::max(kLeast, equations.residualVariance());
 }
 
 }  // namespace pcl_floam

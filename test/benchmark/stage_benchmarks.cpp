@@ -1,6 +1,7 @@
 #include "benchmark/stage_benchmarks.h"
 
 #include "common/sweep_trajectory.h"
+#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 #include "filters/smoothness.h"
 #include "registration/correspondences.h"
@@ -55,7 +56,7 @@ void smoothnessOfAllLines(const StageInput& input, LinePoints& line, std::vector
 {
   for (std::size_t m = 0; m < input.lines.lines(); ++m) {
     line.gather(viewOf(input.scan), input.lines, m);
-    computeSmoothness(line, input.parameters.features.neighbors_each_side, input.parameters.features.smoothness, sigma);
+    computeSmoothness(line, LineNeighborhood().each_side, input.parameters.features.smoothness, sigma);
     gb::DoNotOptimize(sigma.data());
   }
 }

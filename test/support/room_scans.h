@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -68,16 +67,23 @@ inline std::string roomScan(double x, double y)
   return bytes;
 }
 
-/// What of a scan lies on the floor: nothing tells of the way along it.
-inline std::string floorOf(const std::string& scan)
+/// The same lasers above a floor without end, of which nothing tells of the way along it.
+inline std::string floorScan()
 {
-  std::string floor;
-  for (std::size_t i = 0; i + 16 <= scan.size(); i += 16) {
-    float z = 0.0F;
-    std::memcpy(&z, scan.data() + i + 8, sizeof(z));
-    floor += z < -1.69F ? scan.substr(i, 16) : std::string();
+  constexpr int kRings = 16;
+  constexpr int kColumns = 900;
+  constexpr double kHeight = 1.7;  // m
+  std::string bytes;
+  for (int ring = 0; ring < kRings; ++ring) {
+    const double range = kHeight / std::tan((3.0 + 1.0 * ring) * kPi / 180.0);
+    for (int column = 0; column < kColumns; ++column) {
+      const double azimuth = (column + 0.37) * 2.0 * kPi / kColumns;
+      const float point[4] = {static_cast<float>(range * std::cos(azimuth)),
+                              static_cast<float>(range * std::sin(azimuth)), static_cast<float>(-kHeight), 0.5F};
+      bytes.append(reinterpret_cast<const char*>(point), sizeof(point));
+    }
   }
-  return floor;
+  return bytes;
 }
 
 }  // namespace pcl_floam::test

@@ -50,8 +50,7 @@ TEST_F(OdometryTool, FollowsTheDrive)
 TEST_F(OdometryTool, SaysInHowManyScansADirectionWasWeak)
 {
   for (std::size_t i = 0; i < kScans; ++i) {
-    const std::string name = std::to_string(i) + ".bin";
-    folder.write("floor/" + name, test::floorOf(contentOf(folder.path() / "scans" / name)));
+    folder.write("floor/" + std::to_string(i) + ".bin", test::floorScan());
   }
   const Outcome outcome = odometry("floor -o result --engine features --plot none");
   ASSERT_EQ(outcome.status, 1) << outcome.err << outcome.out;

@@ -98,8 +98,7 @@ TEST_F(ScanResults, WhileTimesAreNotFoundOutPosesAreProvisional)
 TEST_F(ScanResults, WeakDirectionsAreCountedPerScan)
 {
   for (std::size_t i = 0; i < kScans; ++i) {
-    const std::string name = std::to_string(i) + ".bin";
-    folder.write("floor/" + name, test::floorOf(contentOf(folder.path() / "scans" / name)));
+    folder.write("floor/" + std::to_string(i) + ".bin", test::floorScan());
   }
   ASSERT_EQ(odometry("floor -o result --engine features --plot none").status, 1);
   std::size_t with_weak_directions = 0;
