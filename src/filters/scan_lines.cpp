@@ -38,6 +38,7 @@ const char* toString(ScanLineFailure failure)
     case ScanLineFailure::source_not_available: return "the cloud lacks what the chosen source of scan lines needs";
     case ScanLineFailure::no_line_structure: return "no scan-line structure was found";
     case ScanLineFailure::not_looked_for: return "scan lines were not looked for";
+    case ScanLineFailure::too_few_lines: return "the scan lines are too few to bear each other out";
   }
   return "unknown";
 }

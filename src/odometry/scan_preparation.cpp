@@ -9,6 +9,14 @@
 
 namespace pcl_floam {
 
+namespace {
+
+/// A surface of a map is borne out by two or three lasers. Where there are not many more, hardly any is, and the
+/// returns are taken one by one.
+constexpr std::size_t kFewestLines = 5;
+
+}  // namespace
+
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
   if (parameters.structure == ScanStructure::space) {
@@ -16,6 +24,12 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines.failure = ScanLineFailure::not_looked_for;
   } else {
     findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+    const bool may_do_without =
+        parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
+    if (lines.valid() && lines.lines() < kFewestLines && may_do_without) {
+      lines = ScanLines();
+      lines.failure = ScanLineFailure::too_few_lines;
+    }
   }
   const auto timingBy = [&](ScanTimingSource source) {
     return findScanTiming(scan, lines, source, parameters.rotation, parameters.threads);

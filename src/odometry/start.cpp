@@ -48,6 +48,7 @@ std::vector<TrackSettings> eachDirection(const TrackSettings& settings, bool is_
 SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& settings, Hypotheses& hypotheses)
 {
   SurfaceRegistration found;
+  found.report.termination = Termination::too_few_correspondences;  // if no motion is likely
   const FirstMotions motions = likelyFirstMotions(kept_.front(), second, settings);
   for (const TrackSettings& of_direction :
        eachDirection(settings, kept_.front().is_direction_known && second.is_direction_known)) {

@@ -304,6 +304,24 @@ TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)
   EXPECT_THROW(track(lines), std::invalid_argument) << "a source without effect";
 }
 
+#ifndef PCL_FLOAM_TEST_FEATURES
+TEST(Odometry, ALidarOfFourLayersIsTakenByItsReturns)
+{
+  Lidar layers;
+  layers.rings = 4;
+  layers.lowest = -3.0;
+  layers.highest = 3.0;
+  Odometry<PointXYZIRT> odometry;
+  for (int k = 0; k < kScans; ++k) {
+    const OdometryReport& report =
+        odometry.track(toCloud(sweepRoom(Room(), layers, [k](double fraction) { return steadyPath(k + fraction); })));
+    EXPECT_EQ(report.scan_line_failure, ScanLineFailure::too_few_lines);
+    const SE3 truth = steadyPath(1.0).inverse() * steadyPath(k + 1.0);
+    EXPECT_LT((report.world_T_sensor.translation - truth.translation).head<2>().norm(), 0.05) << "scan " << k;
+  }
+}
+#endif
+
 TEST(Odometry, SettingsOutOfRangeAreRefused)
 {
   OdometryParameters parameters = defaults();

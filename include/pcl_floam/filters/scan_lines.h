@@ -35,7 +35,8 @@ enum class ScanLineFailure : std::uint8_t {
   empty_cloud,
   source_not_available,
   no_line_structure,
-  not_looked_for  ///< as ScanStructure::space wants it
+  not_looked_for,  ///< as ScanStructure::space wants it
+  too_few_lines    ///< for one line to bear out what another one sees; of an odometry by surfaces
 };
 
 [[nodiscard]] const char* toString(ScanStructure structure);
