@@ -15,7 +15,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines = ScanLines();
     lines.failure = ScanLineFailure::not_looked_for;
   } else {
-    findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+    findScanLines(scan, parameters.sensor, parameters.scan_line_source, parameters.threads, grouping_, lines);
   }
   const auto timingBy = [&](ScanTimingSource source) {
     return findScanTiming(scan, lines, source, parameters.rotation, parameters.threads);
@@ -51,7 +51,7 @@ bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters&
 
 void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters& parameters)
 {
-  extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);
+  extractFeatures(scan, lines, timing, parameters.features, {}, parameters.threads, selections_, features);
   correctVerticalAngle(parameters.vertical_correction, features);
 }
 
