@@ -45,6 +45,7 @@ public:
   /// Drops the blocks whose centres are farther from \p center than \p radius.
   void crop(const Eigen::Vector3d& center, double radius);
 
+  /// As it began, but for its memory, which is used again.
   void clear();
 
 private:

@@ -6,7 +6,7 @@
 #include "motion/sweep_pose.h"
 #include "odometry/sweep.h"
 #include "odometry/track_map.h"
-#include "registration/surface_registration.h"
+#include "registration/surface_residuals.h"
 
 #include <pcl_floam/filters/motion_compensation_mode.h>
 
@@ -93,6 +93,7 @@ public:
   }
 
 private:
+  void beginMap();
   void predict(const Sweep& sweep);
   SurfaceRegistration registerPredicted(const Sweep& sweep, Rivals rivals);
   bool seek(const Sweep& sweep, const SurfaceRegistration& found);
@@ -107,6 +108,7 @@ private:
   double side_;
   Eigen::Vector3d open_;
   std::optional<TrackMap> map_;
+  mutable std::vector<SurfaceSums> room_;
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   bool is_keyframe_ = false;

@@ -36,6 +36,12 @@ TrackMap::TrackMap(double side, double given_horizon)
 {
 }
 
+void TrackMap::clear()
+{
+  space.clear();
+  edges.clear();
+}
+
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);

@@ -16,6 +16,9 @@ struct TrackMap {
 
   void insert(const Sweep& sweep, const SweepPose& pose);
 
+  /// As it began, but for its memory, which is used again.
+  void clear();
+
   VoxelPyramid space;
   VoxelPyramid edges;
   double horizon;
