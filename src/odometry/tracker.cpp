@@ -136,7 +136,7 @@ void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
     const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
     side_ = sampling_.sideFor(points, static_cast<std::size_t>(cells));
   }
-  sampling_.sample(points, kMapSpacing * side_, sweep.dense);
+  dense_.sample(points, kMapSpacing * side_, sweep.dense);
   sampling_.sample(sweep.dense, side_, sweep.sample);
 }
 
@@ -148,7 +148,7 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
     sample(points, sweep);
     return;
   }
-  sampling_.sample(returns, kMapSpacing * side_, sweep.dense);
+  dense_.sample(returns, kMapSpacing * side_, sweep.dense);
   sampling_.sample(sweep.dense, side_, sweep.sample);
 }
 

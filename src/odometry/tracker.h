@@ -94,6 +94,7 @@ private:
   [[nodiscard]] std::vector<TrackSettings> directions(bool are_known) const;
 
   TrackSettings settings_;
+  SpatialSampling dense_;
   SpatialSampling sampling_;
   double side_ = 0.0;                // m, of the finest cells; 0 until the first sweep
   std::vector<PriorMap> prior_map_;  // none or one
