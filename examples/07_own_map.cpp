@@ -22,6 +22,7 @@ public:
   std::unique_ptr<SurfaceMap> makeEmpty(double side) const override { return std::make_unique<Grid>(2.0 * side); }
   std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<Grid>(*this); }
   bool empty() const override { return cells_.empty(); }
+  void clear() override { cells_.clear(); }
   void crop(const Eigen::Vector3d& /*center*/, double /*radius*/) override {}
 
   void insert(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count) override

@@ -1,7 +1,6 @@
-#include <pcl_floam/filters/feature_extractor.h>
+#include "filters/feature_selection.h"
 
 #include "filters/edge_position.h"
-#include "filters/line_rating.h"
 #include "filters/point_times.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
@@ -18,11 +17,6 @@ namespace {
 /// Of the smoothness that makes an edge, so much must lie across the line. Where a surface steps back by a hand's
 /// breadth, as at a door, about a third does.
 constexpr float kAcross = 0.3F;
-
-struct EdgeCandidate {
-  float sharpness;
-  int place;  ///< in the line
-};
 
 /// The first place of the least of some numbers that are not negative.
 int placeOfLeast(const std::vector<float>& numbers, int first, int last)
@@ -41,15 +35,16 @@ int placeOfLeast(const std::vector<float>& numbers, int first, int last)
 class LineSelector {
 public:
   LineSelector(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
-               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable, LineRating& rating,
-               FeatureSet& features)
+               const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable,
+               FeatureSelection& selection)
       : cloud_(cloud),
         lines_(lines),
         timing_(timing),
         parameters_(parameters),
         selectable_(selectable),
-        line_(rating),
-        features_(features)
+        line_(selection.line),
+        features_(selection.features),
+        candidates_(selection.candidates)
   {
   }
 
@@ -97,11 +92,11 @@ private:
     candidates_.clear();
     for (int begin = first; begin < last; begin += kStretch) {
       const int end = std::min(last, begin + kStretch);
-      float sum = 0.0F;
+      int any = 0;
       for (int n = begin; n < end; ++n) {
-        sum += sharpness(n);
+        any |= sharpness(n) > 0.0F ? 1 : 0;
       }
-      for (int n = begin; n < end && sum > 0.0F; ++n) {
+      for (int n = begin; n < end && any != 0; ++n) {
         if (sharpness(n) > 0.0F) {
           candidates_.push_back({sharpness(n), n});
         }
@@ -196,10 +191,10 @@ private:
   const std::vector<std::uint8_t>& selectable_;
   LineRating& line_;
   FeatureSet& features_;
+  std::vector<EdgeCandidate>& candidates_;
   std::int32_t line_number_ = 0;
   std::size_t first_index_ = 0;
   int neighbors_ = 0;  ///< on each side, in this line
-  std::vector<EdgeCandidate> candidates_;
 };
 
 }  // namespace
@@ -208,32 +203,42 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
                      const FeatureParameters& parameters, FeatureSet& features,
                      const std::vector<std::uint8_t>& selectable, int threads)
 {
+  std::vector<FeatureSelection> selections;
+  extractFeatures(cloud, lines, timing, parameters, selectable, threads, selections, features);
+}
+
+void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanTiming& timing,
+                     const FeatureParameters& parameters, const std::vector<std::uint8_t>& selectable, int threads,
+                     std::vector<FeatureSelection>& selections, FeatureSet& features)
+{
   // Each part takes lines that follow each other, so that the parts' features, one after the other, are in the order
   // of the lines for every number of parts. Lines that look at the sky are done sooner: more parts than threads.
   constexpr std::size_t kPartsPerThread = 4;
   const std::size_t wanted = threads > 1 ? kPartsPerThread * static_cast<std::size_t>(threads) : 1;
   const std::size_t parts = std::min(wanted, lines.lines());
-  std::vector<FeatureSet> found(parts);
+  selections.resize(std::max(parts, selections.size()));
   features.clear();
   if (parts > 0) {
-    std::swap(found.front(), features);  // its memory is used again
+    std::swap(selections.front().features, features);  // its memory is used again
   }
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 1)
   for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
     const auto part = static_cast<std::size_t>(p);
-    LineRating rating;
-    LineSelector selector(cloud, lines, timing, parameters, selectable, rating, found[part]);
+    FeatureSelection& selection = selections[part];
+    selection.features.clear();
+    LineSelector selector(cloud, lines, timing, parameters, selectable, selection);
     for (std::size_t m = lines.lines() * part / parts; m < lines.lines() * (part + 1) / parts; ++m) {
       selector.select(m);
     }
-    setTimes(cloud, timing, found[part].planes);
+    setTimes(cloud, timing, selection.features.planes);
   }
   if (parts > 0) {
-    std::swap(found.front(), features);
+    std::swap(selections.front().features, features);
   }
   for (std::size_t part = 1; part < parts; ++part) {
-    features.edges.insert(features.edges.end(), found[part].edges.begin(), found[part].edges.end());
-    features.planes.insert(features.planes.end(), found[part].planes.begin(), found[part].planes.end());
+    const FeatureSet& found = selections[part].features;
+    features.edges.insert(features.edges.end(), found.edges.begin(), found.edges.end());
+    features.planes.insert(features.planes.end(), found.planes.begin(), found.planes.end());
   }
 }
 

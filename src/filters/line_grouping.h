@@ -8,7 +8,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 namespace pcl_floam {
@@ -20,11 +19,13 @@ public:
   static constexpr int kNotMeasurable = -2;
   static constexpr int kNoLine = -1;  ///< measurable, but on none
 
+  /// Begins with another cloud, in the same memory.
   /// \param threads >= 1
-  LineGrouping(std::size_t points, int threads)
-      : line_of_point_(points),
-        counts_(static_cast<std::size_t>(threads), std::vector<std::int32_t>(kMaxScanLines + kBefore, 0))
+  void begin(std::size_t points, int threads)
   {
+    parts_ = static_cast<std::size_t>(threads);
+    line_of_point_.resize(points);
+    counts_.assign(parts_ * kCounts, 0);
   }
 
   /// \param lineOf gives the line of point \p i in [0, kMaxScanLines), \ref kNoLine or \ref kNotMeasurable; called from
@@ -32,15 +33,16 @@ public:
   template <typename LineOf>
   void assign(const LineOf& lineOf)
   {
-    const auto parts = static_cast<int>(counts_.size());
+    const auto parts = static_cast<int>(parts_);
 #pragma omp parallel for num_threads(parts) schedule(static, 1)
     for (int p = 0; p < parts; ++p) {
       const auto part = static_cast<std::size_t>(p);
-      std::vector<std::int32_t>& count = counts_[part];
+      const LineOf line_of = lineOf;  // nobody else's, so that what it holds is read but once
+      std::int32_t* count = &counts_[part * kCounts + kBefore];
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
-        const int line = lineOf(i);
+        const int line = line_of(i);
         line_of_point_[i] = static_cast<std::int16_t>(line);
-        ++count[static_cast<std::size_t>(line + kBefore)];
+        ++count[line];
       }
     }
   }
@@ -75,27 +77,28 @@ public:
   }
 
   /// \param line_count lines to list, >= \ref end
-  void list(int line_count, ScanLines& lines) const
+  void list(int line_count, ScanLines& lines)
   {
-    lines.begin.assign(static_cast<std::size_t>(line_count) + 1, 0);
-    std::vector<std::vector<std::int32_t>> next(counts_.size(), lines.begin);
+    const auto count = static_cast<std::size_t>(line_count);
+    lines.begin.resize(count + 1);
+    next_.resize(parts_ * count);
     std::int32_t listed = 0;
-    for (std::size_t m = 0; m < static_cast<std::size_t>(line_count); ++m) {
+    for (std::size_t m = 0; m < count; ++m) {
       lines.begin[m] = listed;
-      for (std::size_t part = 0; part < counts_.size(); ++part) {
-        next[part][m] = listed;
-        listed += counts_[part][m + kBefore];
+      for (std::size_t part = 0; part < parts_; ++part) {
+        next_[part * count + m] = listed;
+        listed += counts_[part * kCounts + kBefore + m];
       }
     }
     lines.begin.back() = listed;
     lines.index.resize(static_cast<std::size_t>(listed));
-    const auto parts = static_cast<int>(counts_.size());
+    const auto parts = static_cast<int>(parts_);
 #pragma omp parallel for num_threads(parts) schedule(static, 1)
     for (int p = 0; p < parts; ++p) {
       const auto part = static_cast<std::size_t>(p);
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
         if (line_of_point_[i] >= 0) {
-          std::int32_t& place = next[part][static_cast<std::size_t>(line_of_point_[i])];
+          std::int32_t& place = next_[part * count + static_cast<std::size_t>(line_of_point_[i])];
           lines.index[static_cast<std::size_t>(place++)] = static_cast<std::int32_t>(i);
         }
       }
@@ -103,23 +106,27 @@ public:
   }
 
 private:
-  static constexpr int kBefore = 2;  ///< places of the counts before line 0: kNotMeasurable and kNoLine
+  static constexpr std::size_t kBefore = 2;  ///< places of the counts before line 0: kNotMeasurable and kNoLine
+  static constexpr std::size_t kCounts = kBefore + kMaxScanLines;
 
   [[nodiscard]] std::size_t firstOf(std::size_t part) const
   {
-    return line_of_point_.size() * part / counts_.size();
+    return line_of_point_.size() * part / parts_;
   }
 
   [[nodiscard]] std::size_t total(int line) const
   {
-    return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0},
-                           [line](std::size_t sum, const std::vector<std::int32_t>& count) {
-                             return sum + static_cast<std::size_t>(count[static_cast<std::size_t>(line + kBefore)]);
-                           });
+    std::size_t total = 0;
+    for (std::size_t part = 0; part < parts_; ++part) {
+      total += static_cast<std::size_t>((&counts_[part * kCounts + kBefore])[line]);
+    }
+    return total;
   }
 
+  std::size_t parts_ = 1;
   std::vector<std::int16_t> line_of_point_;
-  std::vector<std::vector<std::int32_t>> counts_;  ///< of each part
+  std::vector<std::int32_t> counts_;  ///< of each part, one after the other
+  std::vector<std::int32_t> next_;    ///< places in the list, alike
 };
 
 }  // namespace pcl_floam

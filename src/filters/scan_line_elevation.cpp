@@ -13,9 +13,9 @@ namespace {
 /// distance to that beam's neighbours.
 /// \return fraction of the measurable points that were assigned
 float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance, int threads,
-                       ScanLines& lines)
+                       LineGrouping& grouping, ScanLines& lines)
 {
-  LineGrouping grouping(cloud.size, threads);
+  grouping.begin(cloud.size, threads);
   grouping.assign([&](std::size_t i) {
     if (!isMeasurable(cloud, i)) {
       return LineGrouping::kNotMeasurable;
@@ -76,19 +76,21 @@ std::vector<float> clusterCenters(const std::vector<int>& histogram, int min_cou
 
 }  // namespace
 
-bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines)
+bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                             ScanLines& lines)
 {
   if (sensor.elevations.size() < 2 || sensor.elevations.size() > kMaxScanLines) {
     return false;
   }
   // Half a gap: every point between two beams belongs to one of them; beyond the outermost beams nothing does.
-  const float assigned = groupByElevation(cloud, sensor.elevations, 0.5F, threads, lines);
+  const float assigned = groupByElevation(cloud, sensor.elevations, 0.5F, threads, grouping, lines);
   ensureSweepOrder(cloud, lines, threads);
   lines.confidence *= assigned;
   return assigned > 0.5F;
 }
 
-bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
+bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sensor*/, int threads,
+                                LineGrouping& grouping, ScanLines& lines)
 {
   const std::vector<int> histogram = elevationHistogram(cloud);
   // A line has at least some thousandths of the points; between lines there are next to none.
@@ -99,7 +101,7 @@ bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& /*sen
   if (centers.size() < kMinClusters || centers.size() > kMaxClusters) {
     return false;
   }
-  const float assigned = groupByElevation(cloud, centers, 0.35F, threads, lines);
+  const float assigned = groupByElevation(cloud, centers, 0.35F, threads, grouping, lines);
   // Surfaces without lines fill the elevations evenly: a third of the gap then holds two thirds of the points.
   constexpr float kClusteredFraction = 0.9F;
   if (assigned < kClusteredFraction) {

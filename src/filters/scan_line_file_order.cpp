@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -80,11 +79,21 @@ struct OrderCut {
   explicit OrderCut(Seam azimuth_seam) : seam(azimuth_seam) {}
 
   Seam seam;
-  std::vector<std::int32_t> begin;  ///< of the lines but the first
+  std::array<std::int32_t, kMaxScanLines> begin{};  ///< of the lines but the first; more of them are not plausible
+  std::size_t begun = 0;
   std::size_t rising = 0;
   std::size_t falling = 0;
   std::size_t jumps_up = 0;
   std::size_t jumps_down = 0;
+
+  [[nodiscard]] auto afterLast() const { return begin.begin() + static_cast<std::ptrdiff_t>(begun); }
+
+  void take(std::int32_t place)
+  {
+    if (begun < begin.size()) {
+      begin[begun++] = place;
+    }
+  }
 
   /// Adds the steps within a run; the next run begins with this one's last point.
   void advance(const PointRun& run, const StepCounts& counts)
@@ -95,9 +104,7 @@ struct OrderCut {
       const float step = stepBetween(run.azimuth[n - 1], run.azimuth[n], seam);
       if (std::abs(step) > kJump) {
         (step > 0.0F ? jumps_up : jumps_down)++;
-        if (begin.size() <= kMaxScanLines) {  // more of them are not plausible, however many
-          begin.push_back(static_cast<std::int32_t>(run.place + n));
-        }
+        take(static_cast<std::int32_t>(run.place + n));
       }
     }
   }
@@ -105,7 +112,7 @@ struct OrderCut {
   /// Adds the steps of the cloud's next part.
   void append(const OrderCut& next)
   {
-    begin.insert(begin.end(), next.begin.begin(), next.begin.end());
+    std::for_each(next.begin.begin(), next.afterLast(), [this](std::int32_t place) { take(place); });
     rising += next.rising;
     falling += next.falling;
     jumps_up += next.jumps_up;
@@ -118,12 +125,12 @@ struct OrderCut {
   [[nodiscard]] double meanTilt(const CloudView& cloud, const ScanLines& lines) const
   {
     double tilt = 0.0;
-    for (const std::int32_t place : begin) {
-      const auto n = static_cast<std::size_t>(place);
+    for (std::size_t m = 0; m < begun; ++m) {
+      const auto n = static_cast<std::size_t>(begin[m]);
       tilt += std::abs(elevationOf(cloud, static_cast<std::size_t>(lines.index[n])) -
                        elevationOf(cloud, static_cast<std::size_t>(lines.index[n - 1])));
     }
-    return tilt / static_cast<double>(begin.size() + 1);
+    return tilt / static_cast<double>(begun + 1);
   }
 
   /// Fraction of the steps that go in the prevailing direction.
@@ -137,7 +144,7 @@ struct OrderCut {
   [[nodiscard]] bool isPlausible() const
   {
     constexpr float kFileOrderConfidence = 0.95F;  // other orders of points give about one half
-    return confidence() >= kFileOrderConfidence && begin.size() + 1 >= 4 && begin.size() + 1 <= kMaxScanLines;
+    return confidence() >= kFileOrderConfidence && begun + 1 >= 4 && begun + 1 <= kMaxScanLines;
   }
 };
 
@@ -191,29 +198,30 @@ Cuts cutsOf(const CloudView& cloud, const std::vector<std::int32_t>& index, int 
   constexpr std::size_t kStep = PointRun::kMost - 1;
   const std::size_t runs = (index.size() + kStep - 1) / kStep;
   const auto parts = static_cast<std::size_t>(threads);
-  std::vector<Cuts> cuts(parts);
-#pragma omp parallel for num_threads(threads) schedule(static, 1)
+  Cuts cuts;
+#pragma omp parallel for ordered num_threads(threads) schedule(static, 1)
   for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
     const auto part = static_cast<std::size_t>(p);
+    Cuts found;
     PointRun run;
     StepCounts front;
     StepCounts rear;
     for (std::size_t r = runs * part / parts; r < runs * (part + 1) / parts; ++r) {
       readRun(cloud, index, r * kStep, run);
       countSteps(run.count, run.azimuth.data(), front, rear);
-      cuts[part].front.advance(run, front);
-      cuts[part].rear.advance(run, rear);
+      found.front.advance(run, front);
+      found.rear.advance(run, rear);
     }
+#pragma omp ordered
+    cuts.append(found);
   }
-  for (std::size_t part = 1; part < parts; ++part) {
-    cuts.front().append(cuts[part]);
-  }
-  return std::move(cuts.front());
+  return cuts;
 }
 
 }  // namespace
 
-bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, LineGrouping& /*grouping*/,
+                        ScanLines& lines)
 {
   listMeasurable(cloud, lines.index);
   const Cuts cuts = cutsOf(cloud, lines.index, threads);
@@ -222,7 +230,7 @@ bool linesFromFileOrder(const CloudView& cloud, const SensorModel& /*sensor*/, i
     return false;
   }
   lines.begin.assign(1, 0);
-  lines.begin.insert(lines.begin.end(), cut.begin.begin(), cut.begin.end());
+  lines.begin.insert(lines.begin.end(), cut.begin.begin(), cut.afterLast());
   lines.begin.push_back(static_cast<std::int32_t>(lines.index.size()));
   lines.confidence = cut.confidence();
   lines.kitti_order = cut.seam == Seam::front && cut.rises();

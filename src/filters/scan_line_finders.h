@@ -28,11 +28,22 @@ inline float elevationOf(const CloudView& cloud, std::size_t i)
 /// A sensor has no more scan lines than this.
 constexpr int kMaxScanLines = 1024;
 
-bool linesFromRingField(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
-bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
-bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
-bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
-bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, int threads, ScanLines& lines);
+class LineGrouping;
+
+/// \ref findScanLines in memory that is kept from scan to scan.
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, int threads,
+                   LineGrouping& grouping, ScanLines& lines);
+
+bool linesFromRingField(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                        ScanLines& lines);
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                            ScanLines& lines);
+bool linesFromFileOrder(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                        ScanLines& lines);
+bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                             ScanLines& lines);
+bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
+                                ScanLines& lines);
 
 /// Whether the scan shows more than half a turn. What sees less need not turn at all, as a flash lidar.
 bool goesRound(const CloudView& cloud, const ScanLines& lines);

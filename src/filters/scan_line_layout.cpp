@@ -89,14 +89,15 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
   }
 }
 
-bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
+bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, LineGrouping& grouping,
+                        ScanLines& lines)
 {
   if (!cloud.ring.exists()) {
     return false;
   }
-  LineGrouping grouping(cloud.size, threads);
+  grouping.begin(cloud.size, threads);
   withReader(cloud.ring, [&](const auto& ring_of) {
-    grouping.assign([&](std::size_t i) {
+    grouping.assign([cloud, ring_of](std::size_t i) {
       if (!isMeasurable(cloud, i)) {
         return LineGrouping::kNotMeasurable;
       }
@@ -114,7 +115,8 @@ bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, i
   return true;
 }
 
-bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, ScanLines& lines)
+bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*/, int threads, LineGrouping& grouping,
+                            ScanLines& lines)
 {
   if (cloud.height < kMinScanLines || cloud.width < kMinScanLines ||
       static_cast<std::size_t>(cloud.width) * cloud.height != cloud.size) {
@@ -127,7 +129,7 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
   if (line_count > kMaxScanLines) {
     return false;
   }
-  LineGrouping grouping(cloud.size, threads);
+  grouping.begin(cloud.size, threads);
   grouping.assign([&](std::size_t i) {
     if (!isMeasurable(cloud, i)) {
       return LineGrouping::kNotMeasurable;

@@ -1,6 +1,6 @@
 #include <pcl_floam/filters/scan_lines.h>
 
-#include "filters/scan_line_finders.h"
+#include "filters/line_grouping.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,7 +45,7 @@ const char* toString(ScanLineFailure failure)
 
 namespace {
 
-using Finder = bool (*)(const CloudView&, const SensorModel&, int, ScanLines&);
+using Finder = bool (*)(const CloudView&, const SensorModel&, int, LineGrouping&, ScanLines&);
 
 struct NamedFinder {
   ScanLineSource source;
@@ -101,6 +101,13 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
                    int threads)
 {
+  LineGrouping grouping;
+  findScanLines(cloud, sensor, source, threads, grouping, lines);
+}
+
+void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, int threads,
+                   LineGrouping& grouping, ScanLines& lines)
+{
   const auto start_over = [&lines] {
     lines.index.clear();
     lines.begin.clear();
@@ -118,7 +125,7 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     if (source != ScanLineSource::automatic && source != finder.source) {
       continue;
     }
-    if (finder.find(cloud, sensor, std::max(threads, 1), lines) &&
+    if (finder.find(cloud, sensor, std::max(threads, 1), grouping, lines) &&
         (source != ScanLineSource::automatic || runAlongTheAzimuth(cloud, lines))) {
       lines.source = finder.source;
       return;

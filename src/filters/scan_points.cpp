@@ -10,10 +10,29 @@
 
 namespace pcl_floam {
 
+namespace {
+
+/// \return 1, or 0 if the point is out of range
+inline std::size_t take(const CloudView& cloud, const RangeLimits& squared, std::size_t i, std::size_t n,
+                        ReturnBatch& batch)
+{
+  const float x = cloud.x(i);
+  const float y = cloud.y(i);
+  const float z = cloud.z(i);
+  const float range = x * x + y * y + z * z;
+  batch.x[n] = x;
+  batch.y[n] = y;
+  batch.z[n] = z;
+  batch.index[n] = static_cast<std::int32_t>(i);
+  return range >= squared.nearest && range <= squared.farthest ? 1 : 0;  // refuses NaN, too
+}
+
+}  // namespace
+
 ReturnReader::ReturnReader(const ScanReturns& returns)
     : returns_(returns),
-      nearest_(static_cast<float>(returns.min_range * returns.min_range)),
-      farthest_(static_cast<float>(returns.max_range * returns.max_range))
+      limits_{static_cast<float>(returns.min_range * returns.min_range),
+              static_cast<float>(returns.max_range * returns.max_range)}
 {
 }
 
@@ -33,10 +52,15 @@ void ReturnReader::readLine(ReturnBatch& batch)
   const ScanLines& lines = returns_.lines;
   const auto line_end = static_cast<std::size_t>(lines.begin[line_ + 1]);
   const std::size_t end = std::min(line_end, place_ + ReturnBatch::kMost);
-  std::size_t count = 0;  // no longer in memory
-  for (; place_ < end; ++place_) {
-    count += take(static_cast<std::size_t>(lines.index[place_]), count, batch);
+  // Copies, no longer in memory: what is written to the batch might otherwise change them.
+  const CloudView cloud = returns_.cloud;
+  const RangeLimits limits = limits_;
+  const std::int32_t* index = lines.index.data();
+  std::size_t count = 0;
+  for (std::size_t place = place_; place < end; ++place) {
+    count += take(cloud, limits, static_cast<std::size_t>(index[place]), count, batch);
   }
+  place_ = end;
   std::fill_n(batch.laser.begin(), count, static_cast<std::uint32_t>(line_));
   batch.count = count;
   line_ += place_ == line_end ? 1 : 0;
@@ -48,23 +72,9 @@ void ReturnReader::readCloud(ReturnBatch& batch)
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
       batch.laser[batch.count] = static_cast<std::uint32_t>(place_);
-      batch.count += take(place_, batch.count, batch);
+      batch.count += take(returns_.cloud, limits_, place_, batch.count, batch);
     }
   }
-}
-
-/// \return 1, or 0 if the point is out of range
-inline std::size_t ReturnReader::take(std::size_t i, std::size_t n, ReturnBatch& batch) const
-{
-  const float x = returns_.cloud.x(i);
-  const float y = returns_.cloud.y(i);
-  const float z = returns_.cloud.z(i);
-  const float squared = x * x + y * y + z * z;
-  batch.x[n] = x;
-  batch.y[n] = y;
-  batch.z[n] = z;
-  batch.index[n] = static_cast<std::int32_t>(i);
-  return squared >= nearest_ && squared <= farthest_ ? 1 : 0;  // refuses NaN, too
 }
 
 bool ScanReturns::areAtLeast(std::size_t count) const

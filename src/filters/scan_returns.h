@@ -23,6 +23,12 @@ struct ReturnBatch {
   [[nodiscard]] ScanPoint point(std::size_t n) const { return {x[n], y[n], z[n], 0.5F, laser[n], index[n]}; }
 };
 
+/// Squares of the distances between which returns count, m^2.
+struct RangeLimits {
+  float nearest;
+  float farthest;
+};
+
 /// Reads the returns in the order in which \ref collectPoints lists them.
 class ReturnReader {
 public:
@@ -34,11 +40,9 @@ public:
 private:
   void readLine(ReturnBatch& batch);
   void readCloud(ReturnBatch& batch);
-  std::size_t take(std::size_t i, std::size_t n, ReturnBatch& batch) const;
 
   const ScanReturns& returns_;
-  float nearest_;   // m^2
-  float farthest_;  // m^2
+  RangeLimits limits_;
   std::size_t line_ = 0;
   std::size_t place_ = 0;  // in the lines' list, or in the cloud
 };

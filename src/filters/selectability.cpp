@@ -61,11 +61,14 @@ std::int32_t findDepthSteps(std::size_t count, const float* range, const float* 
 {
   std::int32_t steps = 0;
   for (std::size_t n = 0; n < count; ++n) {
-    const float step = range[n + 1] - range[n];
-    const float nearer = std::min(range[n], range[n + 1]);
-    is_step[n] = static_cast<std::int32_t>(std::abs(step) >= kDepthStep * nearer) &
-                 static_cast<std::int32_t>(squared_step[n] - step * step <= kAdjacent * kAdjacent * nearer * nearer);
-    steps += is_step[n];
+    const float here = range[n];
+    const float next = range[n + 1];
+    const float step = next - here;
+    const float nearer = next < here ? next : here;  // std::min would keep the loop from being made one of vectors
+    const std::int32_t is_deep = std::abs(step) >= kDepthStep * nearer ? 1 : 0;
+    const std::int32_t is_near = squared_step[n] - step * step <= kAdjacent * kAdjacent * nearer * nearer ? 1 : 0;
+    is_step[n] = is_deep & is_near;
+    steps += is_deep & is_near;
   }
   return steps;
 }

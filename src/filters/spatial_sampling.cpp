@@ -52,10 +52,10 @@ void SpatialSampling::forget()
 
 void SpatialSampling::grow()
 {
-  std::vector<Block> old(2 * table_.size());
-  old.swap(table_);
+  smaller_.assign(2 * table_.size(), {});
+  smaller_.swap(table_);
   --shift_;
-  for (const Block& block : old) {
+  for (const Block& block : smaller_) {
     if (block.key != 0) {
       table_[placeOf(block.key)] = block;
     }

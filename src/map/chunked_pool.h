@@ -13,7 +13,7 @@ template <typename T>
 class ChunkedPool {
 public:
   ChunkedPool() = default;
-  ChunkedPool(const ChunkedPool& other) : free_(other.free_), last_(other.last_), used_(other.used_)
+  ChunkedPool(const ChunkedPool& other) : free_(other.free_), last_(other.last_), ever_(other.ever_), used_(other.used_)
   {
     for (const auto& chunk : other.chunks_) {
       chunks_.push_back(std::make_unique<Chunk>(*chunk));
@@ -25,6 +25,7 @@ public:
     chunks_.swap(other.chunks_);
     free_.swap(other.free_);
     std::swap(last_, other.last_);
+    std::swap(ever_, other.ever_);
     std::swap(used_, other.used_);
     return *this;
   }
@@ -39,17 +40,22 @@ public:
   std::uint32_t take()
   {
     ++used_;
+    std::uint32_t i = 0;
     if (!free_.empty()) {
-      const std::uint32_t i = free_.back();
+      i = free_.back();
       free_.pop_back();
+    } else {
+      i = ++last_;
+    }
+    if (i <= ever_) {
       (*this)[i] = T();
       return i;
     }
-    ++last_;
-    if (last_ / kChunk >= chunks_.size()) {
-      chunks_.push_back(std::make_unique<Chunk>());
+    ever_ = i;
+    if (i / kChunk >= chunks_.size()) {
+      chunks_.push_back(std::unique_ptr<Chunk>(new Chunk));  // not filled with zeros before its objects are made
     }
-    return last_;
+    return i;
   }
 
   void release(std::uint32_t i)
@@ -58,9 +64,9 @@ public:
     free_.push_back(i);
   }
 
+  /// Keeps the room.
   void clear()
   {
-    chunks_.clear();
     free_.clear();
     last_ = 0;
     used_ = 0;
@@ -75,6 +81,7 @@ private:
   std::vector<std::unique_ptr<Chunk>> chunks_;
   std::vector<std::uint32_t> free_;
   std::uint32_t last_ = 0;
+  std::uint32_t ever_ = 0;  // the last one before the room was cleared, if that is more
   std::size_t used_ = 0;
 };
 

@@ -38,11 +38,10 @@ struct KeyframeVoxelMap::Impl {
     }
   }
 
-  static void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor,
-                     int threads)
+  void insert(VoxelLayer& layer_of_kind, const std::vector<Feature>& features, const SE3& world_T_sensor, int threads)
   {
-    std::vector<Eigen::Vector3d> points(features.size());
-    std::vector<float> intensities(features.size());
+    points.resize(features.size());
+    intensities.resize(features.size());
     const auto count = static_cast<std::ptrdiff_t>(features.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
     for (std::ptrdiff_t n = 0; n < count; ++n) {
@@ -69,6 +68,11 @@ struct KeyframeVoxelMap::Impl {
   Eigen::Vector3d last_crop = Eigen::Vector3d::Zero();
   std::shared_ptr<const KdTreeSearch> edge_tree;  // shared: a copy of the map may look at the same picture
   std::shared_ptr<const KdTreeSearch> plane_tree;
+
+  // Of the last keyframe: their memory is used again.
+  std::vector<Eigen::Vector3d> points;
+  std::vector<float> intensities;
+  RangeImage scan;
 };
 
 KeyframeVoxelMap::KeyframeVoxelMap(const MapParameters& parameters)
@@ -85,14 +89,14 @@ KeyframeVoxelMap::~KeyframeVoxelMap() = default;
 
 KeyframeVoxelMap& KeyframeVoxelMap::operator=(const KeyframeVoxelMap& other)
 {
-  *impl_ = *other.impl_;
+  impl_ = std::make_unique<Impl>(*other.impl_);
   return *this;
 }
 
 void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sensor, int threads)
 {
-  Impl::insert(impl_->edges, features.edges, world_T_sensor, threads);
-  Impl::insert(impl_->planes, features.planes, world_T_sensor, threads);
+  impl_->insert(impl_->edges, features.edges, world_T_sensor, threads);
+  impl_->insert(impl_->planes, features.planes, world_T_sensor, threads);
   impl_->cropWhenDue(world_T_sensor.translation);
   impl_->rebuildTrees();
 }
@@ -117,7 +121,8 @@ void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& poi
 {
   const double range = impl_->parameters.see_through_range;
   if (range > 0.0) {
-    const RangeImage scan(points);
+    RangeImage& scan = impl_->scan;
+    scan.take(points);
     const std::size_t forgotten = impl_->edges.weakenSeenThrough(scan, world_T_sensor, range, threads) +
                                   impl_->planes.weakenSeenThrough(scan, world_T_sensor, range, threads);
     if (forgotten > 0) {

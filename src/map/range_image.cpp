@@ -8,11 +8,11 @@
 
 namespace pcl_floam {
 
-RangeImage::RangeImage(const std::vector<Eigen::Vector3f>& points)
-    : nearest_(static_cast<std::size_t>(kColumns) * kRows, 0.0F),
-      beam_(nearest_.size()),
-      farthest_(nearest_.size() / kPatch / kPatch, 0.0F)
+void RangeImage::take(const std::vector<Eigen::Vector3f>& points)
 {
+  nearest_.assign(static_cast<std::size_t>(kColumns) * kRows, 0.0F);
+  beam_.resize(nearest_.size());
+  farthest_.assign(nearest_.size() / kPatch / kPatch, 0.0F);
   for (const Eigen::Vector3f& point : points) {
     const float range = point.norm();
     if (!std::isfinite(range)) {

@@ -12,8 +12,12 @@ namespace pcl_floam {
 /// The nearest return of a scan in each of a grid of directions, about 0.7 degrees apart.
 class RangeImage {
 public:
-  /// \param points of one scan, in the sensor's frame, m; ones that are not finite are left out
-  explicit RangeImage(const std::vector<Eigen::Vector3f>& points);
+  RangeImage() = default;
+  explicit RangeImage(const std::vector<Eigen::Vector3f>& points) { take(points); }
+
+  /// Another scan, in the same memory.
+  /// \param points in the sensor's frame, m; ones that are not finite are left out
+  void take(const std::vector<Eigen::Vector3f>& points);
 
   /// True if a beam went through this place, in the sensor's frame, and on for clearly farther, and so did all beams
   /// around it. What no beam met, above all the directions without returns, is not seen through.

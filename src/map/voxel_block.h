@@ -4,6 +4,7 @@
 
 #include "common/prefetch.h"
 #include "map/nearest_so_far.h"
+#include "map/voxel_table.h"
 
 #include <Eigen/Core>
 
@@ -11,30 +12,44 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory_resource>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
 
-/// Integer coordinates of a block of voxels.
-struct BlockKey {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-  std::int32_t z = 0;
-
-  bool operator==(const BlockKey& other) const { return x == other.x && y == other.y && z == other.z; }
-};
-
 /// One mean point per occupied voxel, relative to the block's lowest corner, in groups of four: the distances of a
-/// group are computed at once.
+/// group are computed at once. Containers of blocks hand their memory on to them.
 class VoxelBlock {
 public:
+  using allocator_type = std::pmr::polymorphic_allocator<std::byte>;
   static constexpr std::int32_t kNone = -1;
   /// Places of the blocks around this one, itself in the middle; x fastest.
   static constexpr std::size_t kAround = 27;
+  static constexpr std::size_t kItself = 13;
 
-  explicit VoxelBlock(const BlockKey& block_key) : key(block_key) { around.fill(kNone); }
+  VoxelBlock(const VoxelKey& block_key, const allocator_type& memory) : key(block_key), groups_(memory), voxels_(memory)
+  {
+    around.fill(kNone);
+  }
+  VoxelBlock(const VoxelBlock& other, const allocator_type& memory)
+      : key(other.key), around(other.around), groups_(other.groups_, memory), voxels_(other.voxels_, memory)
+  {
+  }
+  VoxelBlock(VoxelBlock&& other, const allocator_type& memory) noexcept
+      : key(other.key),
+        around(other.around),
+        groups_(std::move(other.groups_), memory),
+        voxels_(std::move(other.voxels_), memory)
+  {
+  }
+  VoxelBlock(const VoxelBlock& other) = default;
+  VoxelBlock(VoxelBlock&& other) noexcept = default;
+  VoxelBlock& operator=(const VoxelBlock& other) = default;
+  VoxelBlock& operator=(VoxelBlock&& other) = default;
+  ~VoxelBlock() = default;
 
-  BlockKey key;
+  VoxelKey key;
   std::array<std::int32_t, kAround> around;
 
   [[nodiscard]] std::size_t size() const { return voxels_.size(); }
@@ -158,8 +173,8 @@ private:
     set(i, point(i) + (offset - point(i)) / voxel.count);
   }
 
-  std::vector<Group> groups_;
-  std::vector<Voxel> voxels_;
+  std::pmr::vector<Group> groups_;
+  std::pmr::vector<Voxel> voxels_;
 };
 
 }  // namespace pcl_floam

@@ -12,27 +12,6 @@ namespace {
 
 constexpr std::int32_t kNone = VoxelBlock::kNone;
 
-std::uint32_t tagOf(std::uint64_t hash)
-{
-  return static_cast<std::uint32_t>(hash);
-}
-
-/// The product's high bits depend on all of the key.
-std::size_t placeOf(std::uint64_t hash, std::size_t mask)
-{
-  return static_cast<std::size_t>(hash >> 32) & mask;
-}
-
-std::uint64_t hashOf(const BlockKey& key)
-{
-  // Three odd 64-bit constants; the high bits, which depend on all of the input, are folded onto the low ones.
-  std::uint64_t h = static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.x)) * 0x9E3779B97F4A7C15ULL;
-  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.y)) * 0xC2B2AE3D27D4EB4FULL;
-  h ^= static_cast<std::uint64_t>(static_cast<std::uint32_t>(key.z)) * 0x165667B19E3779F9ULL;
-  h ^= h >> 32;
-  return h * 0x9E3779B97F4A7C15ULL;
-}
-
 /// Block numbers stay below this, with room to step to neighbours: 32 bits hold twice as many.
 constexpr double kMaxBlockNumber = 1e9;
 
@@ -51,7 +30,16 @@ VoxelLayer::VoxelLayer(double voxel_size)
       voxel_size_(static_cast<float>(voxel_size)),
       block_size_(voxel_size * voxels_per_axis_)
 {
-  rebuildTable(1024);
+}
+
+VoxelLayer::VoxelLayer(const VoxelLayer& other)
+    : voxels_per_axis_(other.voxels_per_axis_),
+      voxel_size_(other.voxel_size_),
+      block_size_(other.block_size_),
+      blocks_(other.blocks_, &memory_),
+      numbers_(other.numbers_),
+      size_(other.size_)
+{
 }
 
 bool VoxelLayer::isRepresentable(const Eigen::Vector3d& point) const
@@ -59,7 +47,7 @@ bool VoxelLayer::isRepresentable(const Eigen::Vector3d& point) const
   return (point.array().abs() < kMaxBlockNumber * block_size_).all();  // false for NaN, too
 }
 
-BlockKey VoxelLayer::keyOf(const Eigen::Vector3d& point) const
+VoxelKey VoxelLayer::keyOf(const Eigen::Vector3d& point) const
 {
   return {static_cast<std::int32_t>(std::floor(point.x() / block_size_)),
           static_cast<std::int32_t>(std::floor(point.y() / block_size_)),
@@ -68,7 +56,7 @@ BlockKey VoxelLayer::keyOf(const Eigen::Vector3d& point) const
 
 VoxelLayer::BlockQuery VoxelLayer::blockQuery(const Eigen::Vector3d& query) const
 {
-  const BlockKey key = keyOf(query);
+  const VoxelKey key = keyOf(query);
   // In double: the subtraction takes away the kilometres, what is left fits a float.
   return {key, (query - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>(), 0.0F};
 }
@@ -83,41 +71,14 @@ std::uint32_t VoxelLayer::voxelAt(const Eigen::Vector3f& offset) const
   return static_cast<std::uint32_t>(voxel);
 }
 
-std::int32_t VoxelLayer::findBlock(const BlockKey& key) const
+std::int32_t VoxelLayer::findBlock(const VoxelKey& key) const
 {
-  const std::size_t mask = table_.size() - 1;
-  const std::uint64_t hash = hashOf(key);
-  for (std::size_t place = placeOf(hash, mask);; place = (place + 1) & mask) {
-    const Entry& entry = table_[place];
-    if (entry.block == kNone ||
-        (entry.tag == tagOf(hash) && blocks_[static_cast<std::size_t>(entry.block)].key == key)) {
-      return entry.block;
-    }
-  }
+  return static_cast<std::int32_t>(numbers_.find(key.packed(0))) - 1;
 }
 
-void VoxelLayer::prefetchEntry(const BlockKey& key) const
+void VoxelLayer::enterInTable(std::size_t block)
 {
-  prefetch(&table_[placeOf(hashOf(key), table_.size() - 1)], 1);
-}
-
-void VoxelLayer::enterInTable(std::int32_t block)
-{
-  const std::size_t mask = table_.size() - 1;
-  const std::uint64_t hash = hashOf(blocks_[static_cast<std::size_t>(block)].key);
-  std::size_t place = placeOf(hash, mask);
-  while (table_[place].block != kNone) {
-    place = (place + 1) & mask;
-  }
-  table_[place] = {tagOf(hash), block};
-}
-
-void VoxelLayer::rebuildTable(std::size_t capacity)
-{
-  table_.assign(capacity, Entry());
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    enterInTable(static_cast<std::int32_t>(b));
-  }
+  numbers_.insert(blocks_[block].key.packed(0), static_cast<std::uint32_t>(block) + 1);
 }
 
 void VoxelLayer::link(std::int32_t block)
@@ -137,21 +98,17 @@ void VoxelLayer::link(std::int32_t block)
   }
 }
 
-std::int32_t VoxelLayer::findOrAddBlock(const BlockKey& key)
+std::int32_t VoxelLayer::findOrAddBlock(const VoxelKey& key)
 {
   const std::int32_t found = findBlock(key);
   if (found != kNone) {
     return found;
   }
-  const auto added = static_cast<std::int32_t>(blocks_.size());
+  const std::size_t added = blocks_.size();
   blocks_.emplace_back(key);
-  if (blocks_.size() * 2 > table_.size()) {
-    rebuildTable(table_.size() * 2);
-  } else {
-    enterInTable(added);
-  }
-  link(added);
-  return added;
+  enterInTable(added);
+  link(static_cast<std::int32_t>(added));
+  return static_cast<std::int32_t>(added);
 }
 
 void VoxelLayer::insert(const Eigen::Vector3d& point)
@@ -181,33 +138,31 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, const float* intens
 {
   constexpr std::int32_t kNowhere = kNone - 1;
   constexpr std::size_t kAhead = 8;
-  std::vector<BlockQuery> places(count);
-  std::vector<std::int32_t> blocks(count);
+  places_.resize(count);
+  homes_.resize(count);
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(count); ++n) {
     const auto i = static_cast<std::size_t>(n);
     const bool representable = isRepresentable(points[i]);
-    places[i] = representable ? blockQuery(points[i]) : BlockQuery{};
-    places[i].intensity = intensities != nullptr ? intensities[i] : 0.0F;
-    blocks[i] = representable ? findBlock(places[i].key) : kNowhere;
+    places_[i] = representable ? blockQuery(points[i]) : BlockQuery{};
+    places_[i].intensity = intensities != nullptr ? intensities[i] : 0.0F;
+    homes_[i] = representable ? findBlock(places_[i].key) : kNowhere;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    blocks[i] = blocks[i] == kNone ? findOrAddBlock(places[i].key) : blocks[i];
+    homes_[i] = homes_[i] == kNone ? findOrAddBlock(places_[i].key) : homes_[i];
   }
   // Each block belongs to one thread, which takes the block's points in their order.
-  std::vector<std::int32_t> owners(count);
-  std::transform(blocks.begin(), blocks.end(), owners.begin(),
-                 [threads](std::int32_t block) { return block >= 0 ? block % threads : kNone; });
+  const auto ownerOf = [threads](std::int32_t block) { return block >= 0 ? block % threads : kNone; };
   std::size_t added = 0;
 #pragma omp parallel for num_threads(threads) schedule(static, 1) reduction(+ : added)
   for (int thread = 0; thread < threads; ++thread) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (i + kAhead < count && owners[i + kAhead] == thread) {
-        prefetch(&blocks_[static_cast<std::size_t>(blocks[i + kAhead])], sizeof(VoxelBlock));
+      if (i + kAhead < count && ownerOf(homes_[i + kAhead]) == thread) {
+        prefetch(&blocks_[static_cast<std::size_t>(homes_[i + kAhead])], sizeof(VoxelBlock));
       }
-      if (owners[i] == thread) {
-        VoxelBlock& block = blocks_[static_cast<std::size_t>(blocks[i])];
-        added += block.add(voxelAt(places[i].offset), places[i].offset, places[i].intensity) ? 1 : 0;
+      if (ownerOf(homes_[i]) == thread) {
+        VoxelBlock& block = blocks_[static_cast<std::size_t>(homes_[i])];
+        added += block.add(voxelAt(places_[i].offset), places_[i].offset, places_[i].intensity) ? 1 : 0;
       }
     }
   }
@@ -225,7 +180,7 @@ void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, const float* intens
       if (isRepresentable(points[i])) {
         places[together] = blockQuery(points[i]);
         places[together].intensity = intensities != nullptr ? intensities[i] : 0.0F;
-        prefetchEntry(places[together].key);
+        numbers_.expect(places[together].key.packed(0));
         ++together;
       }
     }
@@ -252,24 +207,28 @@ void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
     return (middle - center).squaredNorm() > radius * radius;
   };
   // Where each block goes; those that stay keep their order.
-  std::vector<std::int32_t> moved(blocks_.size(), kNone);
   std::int32_t kept = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    if (!isFar(blocks_[b])) {
-      moved[b] = kept++;
-    }
+  for (VoxelBlock& block : blocks_) {
+    block.around[VoxelBlock::kItself] = isFar(block) ? kNone : kept++;
   }
   if (static_cast<std::size_t>(kept) == blocks_.size()) {
     return;
   }
-  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), isFar), blocks_.end());
-  rebuildTable(table_.size());
-  size_ = 0;
   for (VoxelBlock& block : blocks_) {
-    size_ += block.size();
-    for (std::int32_t& other : block.around) {
-      other = other == kNone ? kNone : moved[static_cast<std::size_t>(other)];
+    for (std::size_t place = 0; place < VoxelBlock::kAround; ++place) {
+      std::int32_t& other = block.around[place];
+      if (place != VoxelBlock::kItself && other != kNone) {
+        other = blocks_[static_cast<std::size_t>(other)].around[VoxelBlock::kItself];
+      }
     }
+  }
+  const auto goes = [](const VoxelBlock& block) { return block.around[VoxelBlock::kItself] == kNone; };
+  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), goes), blocks_.end());
+  numbers_.clear();
+  size_ = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    enterInTable(b);
+    size_ += blocks_[b].size();
   }
 }
 
@@ -307,7 +266,7 @@ void VoxelLayer::clear()
 {
   blocks_.clear();
   size_ = 0;
-  rebuildTable(1024);
+  numbers_.clear();
 }
 
 std::vector<float> VoxelLayer::intensities() const

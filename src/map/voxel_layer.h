@@ -2,6 +2,7 @@
 /// One layer of the map: down-sampled points in hashed voxels, and the nearest neighbours among them.
 #pragma once
 
+#include "common/array_pool.h"
 #include "map/range_image.h"
 #include "map/voxel_block.h"
 
@@ -11,6 +12,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <memory_resource>
 #include <vector>
 
 namespace pcl_floam {
@@ -23,6 +25,9 @@ class VoxelLayer : public NeighborSearch {
 public:
   /// \param voxel_size m, > 0
   explicit VoxelLayer(double voxel_size);
+  VoxelLayer(const VoxelLayer& other);
+  VoxelLayer& operator=(const VoxelLayer& other) = delete;
+  ~VoxelLayer() override = default;
 
   /// Adds a point in the world frame; points of one voxel are averaged. One that is not finite, or more than a
   /// billion blocks away, is left out.
@@ -63,24 +68,22 @@ public:
 private:
   /// A query in the frame of one block: where blocks and their points are seen from it.
   struct BlockQuery {
-    BlockKey key;                                      ///< of the block that holds the query
+    VoxelKey key;                                      ///< of the block that holds the query
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();  ///< of the query from that block's corner
     float intensity = 0.0F;                            ///< of a point that is inserted
   };
 
   /// Finite, and its block's number fits 32 bits: within a billion blocks of the origin.
   [[nodiscard]] bool isRepresentable(const Eigen::Vector3d& point) const;
-  [[nodiscard]] BlockKey keyOf(const Eigen::Vector3d& point) const;
+  [[nodiscard]] VoxelKey keyOf(const Eigen::Vector3d& point) const;
   [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
 
-  [[nodiscard]] std::int32_t findBlock(const BlockKey& key) const;
-  void prefetchEntry(const BlockKey& key) const;
-  std::int32_t findOrAddBlock(const BlockKey& key);
+  [[nodiscard]] std::int32_t findBlock(const VoxelKey& key) const;
+  std::int32_t findOrAddBlock(const VoxelKey& key);
   void insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count);
   void insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads);
-  void enterInTable(std::int32_t block);
-  void rebuildTable(std::size_t capacity);
+  void enterInTable(std::size_t block);
   /// Makes a block and those around it known to each other.
   void link(std::int32_t block);
 
@@ -96,14 +99,11 @@ private:
   int voxels_per_axis_;
   float voxel_size_;
   double block_size_;
-  std::vector<VoxelBlock> blocks_;
-
-  /// A place of the hash table. Most look-ups are for blocks that don't exist: the tag tells without a look at one.
-  struct Entry {
-    std::uint32_t tag = 0;  ///< further bits of the key's hash
-    std::int32_t block = VoxelBlock::kNone;
-  };
-  std::vector<Entry> table_;  ///< open addressing, a power of two
+  ArrayPool memory_;
+  std::pmr::vector<VoxelBlock> blocks_{&memory_};
+  VoxelTable numbers_;               ///< of the blocks, from 1
+  std::vector<BlockQuery> places_;   ///< of the last points that threads shared ...
+  std::vector<std::int32_t> homes_;  ///< ... and their blocks
   std::size_t size_ = 0;
 };
 

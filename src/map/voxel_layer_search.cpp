@@ -75,7 +75,7 @@ template <typename Limit, typename Visit>
 void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const
 {
   const auto size = static_cast<float>(block_size_);
-  const auto visitOne = [&](const BlockKey& key, const VoxelBlock* block) {
+  const auto visitOne = [&](const VoxelKey& key, const VoxelBlock* block) {
     const Eigen::Vector3f corner(static_cast<float>(static_cast<double>(key.x) - query.key.x) * size,
                                  static_cast<float>(static_cast<double>(key.y) - query.key.y) * size,
                                  static_cast<float>(static_cast<double>(key.z) - query.key.z) * size);
@@ -147,7 +147,7 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
     for (std::size_t i = 0; i < together; ++i) {
       const Eigen::Vector3d& query = queries[first + i];
       places[i] = isRepresentable(query) ? blockQuery(query) : BlockQuery{};
-      prefetchEntry(places[i].key);
+      numbers_.expect(places[i].key.packed(0));
     }
     for (std::size_t i = 0; i < together; ++i) {
       homes[i] = findBlock(places[i].key);

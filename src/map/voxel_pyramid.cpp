@@ -102,6 +102,7 @@ void VoxelPyramid::crop(const Eigen::Vector3d& center, double radius)
 
 void VoxelPyramid::clear()
 {
+  keyframe_ = 0;
   points_ = 0;
   cells_.clear();
 }

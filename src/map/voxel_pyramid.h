@@ -51,7 +51,7 @@ public:
   /// Drops the blocks whose centres are farther from \p center than \p radius.
   void crop(const Eigen::Vector3d& center, double radius) override;
 
-  void clear();
+  void clear() override;
 
 private:
   static constexpr std::size_t kAtOnce = 32;  ///< places that are looked up side by side

@@ -165,7 +165,9 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
   }
   const std::array<std::uint32_t, 8>& children = cells_.content(found.cell).child;
   for (const std::uint32_t child : children) {
-    prefetch(&cells_.content(child), sizeof(children));
+    if (child != 0) {
+      prefetch(&cells_.content(child), sizeof(children));
+    }
   }
   const float half = 0.25F * static_cast<float>(sideOf(found.level));  // of a child
   const Eigen::Array3f from_center = (offset - center).array();
@@ -174,9 +176,12 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
   const unsigned first = octantOf(Eigen::Vector3f(offset - center));
   for (unsigned i = 0; i < 8; ++i) {
     const unsigned child = first ^ i;
+    if (children[child] == 0) {
+      continue;
+    }
     const float outside = ((child & 1U) != 0U ? above : below).x() + ((child & 2U) != 0U ? above : below).y() +
                           ((child & 4U) != 0U ? above : below).z();
-    if (children[child] != 0 && outside < nearest.squared) {
+    if (outside < nearest.squared) {
       findNearest({children[child], found.level - 1}, center + half * towards(child), offset, nearest);
     }
   }

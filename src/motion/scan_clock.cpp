@@ -10,19 +10,18 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::size_t kRememberedPeriods = 31;  // a few seconds: longer than a disturbance
-constexpr double kClockWasSet = 100.0;          // periods
-constexpr double kNoTime = 0.01;                // periods; a velocity over less would be the noise of the pose
+constexpr double kClockWasSet = 100.0;  // periods
+constexpr double kNoTime = 0.01;        // periods; a velocity over less would be the noise of the pose
 
 }  // namespace
 
 double ScanClock::period() const
 {
-  if (given_period_ > 0.0 || recent_.empty()) {
+  if (given_period_ > 0.0) {
     return given_period_;
   }
-  std::vector<double> recent = recent_;
-  return medianOf(recent);
+  std::array<double, kRemembered> recent = recent_;
+  return medianOf(recent.begin(), recent.begin() + std::min(remembered_, kRemembered));
 }
 
 double ScanClock::error() const
@@ -63,10 +62,7 @@ double ScanClock::tick(std::optional<double> stamp)
 
 void ScanClock::remember(double elapsed)
 {
-  if (recent_.size() == kRememberedPeriods) {
-    recent_.erase(recent_.begin());
-  }
-  recent_.push_back(elapsed);
+  recent_[remembered_++ % kRemembered] = elapsed;
 }
 
 }  // namespace pcl_floam

@@ -2,8 +2,9 @@
 /// How far apart scans are, from their stamps.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -30,10 +31,13 @@ private:
 
   double given_period_;
   std::optional<double> last_stamp_;
-  int standing_ = 0;            ///< the last stamps that did not advance
-  bool stood_ = false;          ///< the one before the last did not
-  double unstamped_ = 0.0;      ///< periods counted since the last stamp
-  std::vector<double> recent_;  ///< the last differences of stamps, s a period
+  int standing_ = 0;        ///< the last stamps that did not advance
+  bool stood_ = false;      ///< the one before the last did not
+  double unstamped_ = 0.0;  ///< periods counted since the last stamp
+
+  static constexpr std::size_t kRemembered = 31;  ///< a few seconds: longer than a disturbance
+  std::array<double, kRemembered> recent_{};      ///< the last differences of stamps, s a period
+  std::size_t remembered_ = 0;
 };
 
 }  // namespace pcl_floam

@@ -70,10 +70,13 @@ public:
   {
     std::vector<RegistrationReport> found(looks.size());
     std::vector<double> evidence(looks.size());
-    eachSideBySide(settings_.threads, looks.size(), [&](std::size_t i) {
-      Track track(settings_);
-      found[i] = track.findMotion(first_, second_, looks[i]).report;
-      evidence[i] = track.evidence();
+    const auto parts = std::min(looks.size(), static_cast<std::size_t>(settings_.threads));
+    eachSideBySide(settings_.threads, parts, [&](std::size_t part) {
+      Track track(settings_);  // its memory serves one look after the other
+      for (std::size_t i = part; i < looks.size(); i += parts) {
+        found[i] = track.findMotion(first_, second_, looks[i]).report;
+        evidence[i] = track.evidence();
+      }
     });
     for (std::size_t i = 0; i < looks.size(); ++i) {
       if (found[i].hasConverged()) {

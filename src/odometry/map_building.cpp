@@ -21,10 +21,11 @@ SweepMotion motionDuring(const SweepPose& pose)
   return SweepMotion(pose.twist, kMiddle, pose.acceleration);
 }
 
-std::vector<Eigen::Vector3f> undistorted(const std::vector<ScanPoint>& measured, const SweepPose& pose, int threads)
+void undistort(const std::vector<ScanPoint>& measured, const SweepPose& pose, int threads,
+               std::vector<Eigen::Vector3f>& points)
 {
   const MovingSensor sensor(SE3(), pose.twist, pose.acceleration);
-  std::vector<Eigen::Vector3f> points(measured.size());
+  points.resize(measured.size());
   constexpr std::ptrdiff_t kTogether = 256;
   const auto count = static_cast<std::ptrdiff_t>(points.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
@@ -37,7 +38,6 @@ std::vector<Eigen::Vector3f> undistorted(const std::vector<ScanPoint>& measured,
       points[first + i] = places[i].cast<float>();
     }
   }
-  return points;
 }
 
 }  // namespace
@@ -66,9 +66,8 @@ bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy)
 
 void MapBuilding::insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads)
 {
-  FeatureSet undistorted;
-  compensate(measured, motionDuring(world_T_sensor), undistorted, threads);
-  map_.insert(undistorted, world_T_sensor.middle, threads);
+  compensate(measured, motionDuring(world_T_sensor), undistorted_, threads);
+  map_.insert(undistorted_, world_T_sensor.middle, threads);
   world_T_keyframe_ = world_T_sensor.middle;
   ++keyframes_;
 }
@@ -92,8 +91,8 @@ bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPos
   if (is_keyframe) {
     if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
       scan.takePoints(cloud, parameters);
-      map_.forgetSeenThrough(undistorted(scan.points, world_T_sensor, parameters.threads), world_T_sensor.middle,
-                             parameters.threads);
+      undistort(scan.points, world_T_sensor, parameters.threads, all_undistorted_);
+      map_.forgetSeenThrough(all_undistorted_, world_T_sensor.middle, parameters.threads);
     }
     insert(scan.features, world_T_sensor, parameters.threads);
   }

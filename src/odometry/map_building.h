@@ -10,6 +10,7 @@
 #include <pcl_floam/odometry/odometry_parameters.h>
 
 #include <optional>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -43,6 +44,8 @@ private:
   void insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads);
 
   KeyframeVoxelMap map_;
+  FeatureSet undistorted_;                        // of the last keyframe
+  std::vector<Eigen::Vector3f> all_undistorted_;  // of the last scan that was looked through
   std::optional<MapUse> prior_;
   KeyframeRule rule_;
   SE3 world_T_keyframe_;

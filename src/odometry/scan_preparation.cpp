@@ -23,7 +23,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines = ScanLines();
     lines.failure = ScanLineFailure::not_looked_for;
   } else {
-    findScanLines(scan, parameters.sensor, parameters.scan_line_source, lines, parameters.threads);
+    findScanLines(scan, parameters.sensor, parameters.scan_line_source, parameters.threads, grouping_, lines);
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
     if (lines.valid() && lines.lines() < kFewestLines && may_do_without) {
@@ -65,7 +65,7 @@ bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters&
 
 void PreparedScan::takeFeatures(const CloudView& scan, const OdometryParameters& parameters)
 {
-  extractFeatures(scan, lines, timing, parameters.features, features, {}, parameters.threads);
+  extractFeatures(scan, lines, timing, parameters.features, {}, parameters.threads, selections_, features);
   correctVerticalAngle(parameters.vertical_correction, features);
 }
 

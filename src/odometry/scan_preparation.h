@@ -2,6 +2,9 @@
 /// What the odometry takes from one scan (the paper's "Sensor Model and Feature Extraction").
 #pragma once
 
+#include "filters/feature_selection.h"
+#include "filters/line_grouping.h"
+
 #include <pcl_floam/filters/features.h>
 #include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/odometry/odometry_parameters.h>
@@ -37,6 +40,8 @@ struct PreparedScan {
 
 private:
   bool turns_ = false;  ///< as an earlier scan showed
+  LineGrouping grouping_;
+  std::vector<FeatureSelection> selections_;
 };
 
 }  // namespace pcl_floam

@@ -57,6 +57,15 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found)
 
 }  // namespace
 
+void Track::beginMap()
+{
+  if (map_) {
+    map_->clear();
+  } else {
+    map_.emplace(settings_);
+  }
+}
+
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
 {
   constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
@@ -65,7 +74,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
   double far = look.far;
   for (int round = 0; round < look.rounds; ++round, far *= 0.5) {
     const Vector6 motion = log(first_T_second) / second.periods;
-    map_.emplace(settings_);
+    beginMap();
     map_->insert(first, {SE3(), fractionOf(first) * motion});
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
@@ -91,7 +100,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 {
   SurfaceRegistration found = findMotion(first, second, look);
   if (found.report.hasConverged()) {
-    map_.emplace(settings_);
+    beginMap();
     map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
     motion_.learnNothing();  // it was supposed, not predicted
     update(second, found);
@@ -103,7 +112,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
 void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
 {
   constexpr Doubt kKnown = {0.01, 0.01};
-  map_.emplace(settings_);
+  beginMap();
   Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);
@@ -248,6 +257,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
   problem.threads = settings_.threads;
+  problem.room = &room_;
   return problem;
 }
 

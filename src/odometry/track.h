@@ -9,7 +9,7 @@
 #include "odometry/track_keyframes.h"
 #include "odometry/track_map.h"
 #include "odometry/track_settings.h"
-#include "registration/surface_registration.h"
+#include "registration/surface_residuals.h"
 
 #include <cstdint>
 #include <optional>
@@ -80,6 +80,7 @@ public:
   }
 
 private:
+  void beginMap();
   void predict(const Sweep& sweep);
   SurfaceRegistration registerPredicted(const Sweep& sweep, Rivals rivals);
   bool seek(const Sweep& sweep, const SurfaceRegistration& found);
@@ -91,6 +92,7 @@ private:
   TrackSettings settings_;
   Eigen::Vector3d open_;
   std::optional<TrackMap> map_;
+  mutable std::vector<SurfaceSums> room_;
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   bool is_keyframe_ = false;

@@ -49,6 +49,12 @@ TrackMap& TrackMap::operator=(const TrackMap& other)
   return *this = TrackMap(other);
 }
 
+void TrackMap::clear()
+{
+  space_->clear();
+  edges_.clear();
+}
+
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);

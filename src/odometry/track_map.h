@@ -24,6 +24,9 @@ public:
 
   void insert(const Sweep& sweep, const SweepPose& pose);
 
+  /// As it began, but for its memory, which is used again.
+  void clear();
+
   /// Takes in a map that many sweeps have made: no point of it is of one laser's pattern.
   void insert(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges);
 

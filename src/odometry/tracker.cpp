@@ -49,7 +49,7 @@ void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
     const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
     settings_.side = sampling_.sideFor(points, static_cast<std::size_t>(cells));
   }
-  sampling_.sample(points, kMapSpacing * settings_.side, sweep.dense);
+  dense_.sample(points, kMapSpacing * settings_.side, sweep.dense);
   choosePoints(sweep);
 }
 
@@ -61,7 +61,7 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
     sample(points, sweep);
     return;
   }
-  sampling_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
+  dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
   choosePoints(sweep);
 }
 

@@ -69,6 +69,7 @@ private:
   Outcome stepAll(const Sweep& sweep);
 
   TrackSettings settings_;
+  SpatialSampling dense_;
   SpatialSampling sampling_;
   std::optional<PriorMap> prior_map_;
   std::optional<Start> start_;  // from the first sweep until it is settled

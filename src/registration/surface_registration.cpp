@@ -41,7 +41,8 @@ public:
         pose_(problem.prior.pose),
         velocity_(problem.prior.velocity),
         prior_(priorInformation(problem.prior)),
-        doubt_(problem.reach.topLeftCorner<3, 3>().trace())
+        doubt_(problem.reach.topLeftCorner<3, 3>().trace()),
+        parts_(problem.room != nullptr ? *problem.room : own_parts_)
   {
   }
 
@@ -290,7 +291,8 @@ private:
   Square12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
-  std::vector<SurfaceSums> parts_;
+  std::vector<SurfaceSums> own_parts_;
+  std::vector<SurfaceSums>& parts_;
   std::vector<WeakDirection> weak_;
   Square6 strong_ = Square6::Identity();  // projects on all other directions
 };

@@ -58,6 +58,7 @@ struct SurfaceProblem {
   bool looks_for_weak = true;  ///< directions that the scan does not tell of
   int max_iterations = 12;
   int threads = 1;
+  std::vector<struct SurfaceSums>* room = nullptr;  ///< memory that may be used again; nullptr: there is none
 };
 
 struct SurfaceRegistration {

@@ -140,6 +140,7 @@ public:
   }
   [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<CountingMap>(*this); }
   [[nodiscard]] bool empty() const override { return map_.empty(); }
+  void clear() override { map_.clear(); }
   void beginKeyframe() override
   {
     map_.beginKeyframe();

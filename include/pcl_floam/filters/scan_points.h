@@ -38,7 +38,8 @@ struct ScanReturns {
 /// \param[out] points overwritten; its memory is reused
 void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
-/// Takes points evenly by space: the first one in each cube.
+/// Takes points evenly by space: the first one in each cube. Fastest where samples that follow each other are about as
+/// large.
 class SpatialSampling {
 public:
   /// \param side m, of the cubes
@@ -64,7 +65,8 @@ private:
   [[nodiscard]] std::size_t placeOf(std::uint64_t key) const;
 
   std::vector<Block> table_;
-  unsigned shift_ = 0;  // leaves as many bits of a hash as number the table's slots
+  std::vector<Block> smaller_;  // the table before it grew
+  unsigned shift_ = 0;          // leaves as many bits of a hash as number the table's slots
   std::size_t used_ = 0;
   std::size_t last_ = 0;  // block
 };

@@ -27,6 +27,9 @@ public:
 
   [[nodiscard]] virtual std::unique_ptr<SurfaceMap> copy() const = 0;
 
+  /// Forgets all. Its memory may be used again.
+  virtual void clear() = 0;
+
   /// What comes in from now on is of another keyframe.
   virtual void beginKeyframe() {}
 
