@@ -28,8 +28,6 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
-constexpr double kNothingKnown = 1e-6;  // 1/m^2 and 1/rad^2: a kilometre
-
 using Square6 = Eigen::Matrix<double, 6, 6>;
 using Square12 = Eigen::Matrix<double, 12, 12>;
 using Column12 = Eigen::Matrix<double, 12, 1>;
@@ -40,7 +38,7 @@ public:
       : problem_(problem),
         pose_(problem.prior.pose),
         velocity_(problem.prior.velocity),
-        prior_(priorInformation(problem.prior)),
+        prior_(problem.prior.information()),
         doubt_(problem.reach.topLeftCorner<3, 3>().trace()),
         parts_(problem.room != nullptr ? *problem.room : own_parts_)
   {
@@ -85,23 +83,6 @@ private:
       }
     }
     return sums;
-  }
-
-  /// By how much the velocity follows the pose, and how well it is known then; and how well the pose is known.
-  [[nodiscard]] static Square12 priorInformation(const SweepPrior& prior)
-  {
-    constexpr double kLeastVariance = 1e-12;
-    const Square12 covariance = prior.covariance;
-    const Square6 pose = covariance.topLeftCorner<6, 6>() + kLeastVariance * Square6::Identity();
-    const Square6 gain = pose.ldlt().solve(Square6(covariance.topRightCorner<6, 6>())).transpose();
-    const Square6 rest = covariance.bottomRightCorner<6, 6>() - gain * covariance.topRightCorner<6, 6>() +
-                         kLeastVariance * Square6::Identity();
-    const Square6 known = rest.inverse();
-    Square12 information;
-    information << gain.transpose() * known * gain, -gain.transpose() * known, -known * gain, known;
-    information.topLeftCorner<6, 6>() +=
-        prior.pose_counts ? Square6(pose.inverse()) : Square6(kNothingKnown * Square6::Identity());
-    return information;
   }
 
   /// \return whether it was a small step
@@ -255,12 +236,7 @@ private:
   {
     const NormalEquations& e = sums.equations;
     const auto cleaned = [&](const Matrix6& m) { return Square6(strong_.transpose() * m * strong_); };
-    Column12 off;
-    off.head<3>() = pose_.translation - problem_.prior.pose.translation;
-    off.segment<3>(3) = logSO3(pose_.rotation * problem_.prior.pose.rotation.transpose());
-    const Vector6 faster = velocity_ - problem_.prior.velocity;
-    off.segment<3>(6) = pose_.rotation * faster.head<3>();
-    off.segment<3>(9) = pose_.rotation * faster.tail<3>();
+    const Column12 off = problem_.prior.offset(pose_, velocity_);
     Equations equations;
     equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
         cleaned(e.twist_information);

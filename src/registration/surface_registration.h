@@ -3,6 +3,7 @@
 #pragma once
 
 #include "registration/pose_factors.h"
+#include "registration/sweep_prior.h"
 
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/filters/scan_points.h>
@@ -21,26 +22,11 @@ struct SurfaceTerm {
   const SurfaceSearch* target = nullptr;
 };
 
-using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
-
 /// How a sweep's points follow the sensor's motion during it.
 enum class SweepPlacement : std::uint8_t {
   held,     ///< they are placed by the velocity that was expected
   follows,  ///< by the velocity that each iteration makes of the pose
   joint     ///< and pose and velocity are what explains them best
-};
-
-/// What is expected of a sweep.
-struct SweepPrior {
-  SE3 pose;                                   ///< target_T_sensor at mid-sweep: the guess
-  Vector6 velocity = Vector6::Zero();         ///< there, m and rad a period, in the sensor's axes
-  Vector6 velocity_before = Vector6::Zero();  ///< in the middle of the sweep before
-  double periods_between = 0.0;               ///< since then; 0: the velocity is taken for constant
-  /// Of pose and velocity: perturbations on the left (translation m, rotation rad), about the sensor's position, the
-  /// target's axes.
-  Matrix12 covariance = Matrix12::Identity();
-  bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
-  double fraction = 0.0;    ///< duration of the sweep in periods
 };
 
 /// What is to be registered, and what is known before.

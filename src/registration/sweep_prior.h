@@ -1,0 +1,35 @@
+/// \file sweep_prior.h
+/// What is expected of a sweep before it is registered.
+#pragma once
+
+#include <pcl_floam/common/se3.h>
+
+namespace pcl_floam {
+
+using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
+using Vector12 = Eigen::Matrix<double, 12, 1, Eigen::DontAlign>;
+
+/// What is expected of a sweep.
+struct SweepPrior {
+  SE3 pose;                                   ///< target_T_sensor at mid-sweep: the guess
+  Vector6 velocity = Vector6::Zero();         ///< there, m and rad a period, in the sensor's axes
+  Vector6 velocity_before = Vector6::Zero();  ///< in the middle of the sweep before
+  double periods_between = 0.0;               ///< since then; 0: the velocity is taken for constant
+  /// Of pose and velocity: perturbations on the left (translation m, rotation rad), about the sensor's position, the
+  /// target's axes.
+  Matrix12 covariance = Matrix12::Identity();
+  bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
+  double fraction = 0.0;    ///< duration of the sweep in periods
+
+  /// H of pose and velocity: by how much the velocity follows the pose, and how well it is known then; and, if it
+  /// counts, how well the pose is known.
+  [[nodiscard]] Matrix12 information() const;
+
+  /// How far a pose and a velocity are from what was expected.
+  [[nodiscard]] Vector12 offset(const SE3& target_T_sensor, const Vector6& at_velocity) const;
+};
+
+/// What nothing is known of, as information: a kilometre, 1/m^2 and 1/rad^2.
+inline constexpr double kNothingKnown = 1e-6;
+
+}  // namespace pcl_floam
