@@ -19,9 +19,6 @@ constexpr std::size_t kCoarsestPoints = 1500;
 /// Of a moved point whose coordinates are in single precision, as a share of the largest.
 constexpr double kFloatRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
 
-/// Voxels of a thinned cloud, in extents.
-constexpr double kRoughVoxel = 0.03;
-
 /// Coordinates are bounded so that their squares stay finite in single precision.
 constexpr float kLargest = 1e18F;
 
@@ -139,23 +136,11 @@ CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 }
 
 CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
-    : CloudPyramid(threads)
+    : threads_(threads)
 {
   const Points points = takePoints(cloud, selectable);
   full_ = makeLevel(points.position, points.number, threads);
   full_.rounding = kFloatRounding * points.largest;
-}
-
-std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
-                                                    int threads)
-{
-  std::unique_ptr<CloudPyramid> pyramid(new CloudPyramid(threads));
-  const Points points = pyramid->takePoints(cloud, selectable);
-  const double voxel_size = std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min());
-  const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
-  pyramid->full_ = makeLevel(means, numbers, threads);
-  pyramid->full_.rounding = kFloatRounding * points.largest;
-  return pyramid;
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const

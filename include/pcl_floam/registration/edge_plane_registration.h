@@ -150,25 +150,22 @@ private:
   struct Target {
     std::unique_ptr<KeyframeVoxelMap> features;  ///< of a cloud with scan lines
     std::unique_ptr<PreparedCloud> points;       ///< of any cloud, made when it is first needed
-    std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
   };
 
   void forgetResult();
   void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
+  [[nodiscard]] FeatureSet sourceFeatures() const;
   [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
   [[nodiscard]] const PreparedCloud& targetPoints();
-  [[nodiscard]] bool wantsPoints() const;
   [[nodiscard]] bool hasSearchOfItsOwn() const;
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
   [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
   [[nodiscard]] int iterationLimit() const { return std::max(1, this->max_iterations_); }
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
-  [[nodiscard]] SE3 roughPose(const SE3& guess);
-  [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
-  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess, int max_iterations, bool coarse_first);
-  [[nodiscard]] RegistrationReport finishByPoints(const RegistrationReport& by_features);
+  [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess);
+  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess);
   void takeSource(const Matrix4& stretch);
   void runBaseLoop(PointCloudSource& output, const Matrix4& guess);
   void setUpCriteria();

@@ -27,6 +27,18 @@ std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar
   return maskOf(*this->indices_, this->input_->size());
 }
 
+/// Of a source without scan lines that meets a map, all points stand for planes.
+template <typename PointSource, typename PointTarget, typename Scalar>
+FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::sourceFeatures() const
+{
+  if (source_features_) {
+    return *source_features_;
+  }
+  const CloudView cloud = viewOf(*registered_);
+  const FeatureSet features = scanLineFeatures(cloud, sensor_, feature_parameters_, selectableSource());
+  return features.planes.empty() && features.edges.empty() ? pointFeatures(cloud, selectableSource()) : features;
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
 {
@@ -73,34 +85,13 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   return parameters;
 }
 
-/// Where to start on the features, which must be near theirs already.
 template <typename PointSource, typename PointTarget, typename Scalar>
-SE3 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::roughPose(const SE3& guess)
-{
-  constexpr int kFewIterations = 4;
-  if (target_map_ || source_features_ || this->max_iterations_ < kFewIterations) {
-    return guess;
-  }
-  if (!prepared_target_->thinned) {
-    prepared_target_->thinned = std::make_unique<PreparedCloud>(
-        PreparedCloud::thinned(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_));
-  }
-  CloudRegistrationRun run;
-  run.guess = guess;
-  run.threads = threads_;
-  run.max_distance = this->corr_dist_threshold_;
-  run.locked = parameters_.locked;
-  return alignRoughly(PreparedCloud::thinned(viewOf(*registered_), selectableSource(), threads_),
-                      *prepared_target_->thinned, run);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess,
-                                                                                               FeatureSet& source)
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess)
 {
   const KeyframeVoxelMap& map = *targetFeatures();
+  const FeatureSet source = sourceFeatures();
   RegistrationRun run;
-  run.guess = roughPose(guess);
+  run.guess = guess;
   run.threads = threads_;
   SE3 last = run.guess;
   run.on_iteration = [this, &last](const SE3& target_T_source) {
@@ -115,17 +106,14 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess,
-                                                                                             int max_iterations,
-                                                                                             bool coarse_first)
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess)
 {
   const PreparedCloud& target = targetPoints();
   const PreparedCloud source(viewOf(*registered_), selectableSource(), threads_);
   CloudRegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
-  run.max_iterations = max_iterations;
-  run.coarse_first = coarse_first;
+  run.max_iterations = iterationLimit();
   run.max_distance = this->corr_dist_threshold_;
   run.epsilon = std::sqrt(std::max(0.0, this->transformation_epsilon_));
   run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
@@ -143,26 +131,6 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   return registerClouds(source, target, run);
 }
 
-/// A few iterations with all points of two scans, after those with their features: thousands of features find the pose,
-/// all points tell it more exactly.
-template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::finishByPoints(
-    const RegistrationReport& by_features)
-{
-  constexpr int kAFew = 6;
-  const int left = std::min(kAFew, iterationLimit() - by_features.iterations);
-  if (left < 1) {
-    return by_features;
-  }
-  RegistrationReport report = registerByPoints(by_features.target_T_source, left, false);
-  if (!report.hasConverged()) {
-    return by_features;
-  }
-  report.iterations += by_features.iterations;
-  report.termination = by_features.termination;
-  return report;
-}
-
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerSource(const SE3& guess)
 {
@@ -171,24 +139,8 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     report.termination = Termination::invalid_input;
     return report;
   }
-  if (target_map_ || (!wantsPoints() && targetFeatures() != nullptr)) {
-    FeatureSet source = source_features_
-                            ? *source_features_
-                            : scanLineFeatures(viewOf(*registered_), sensor_, feature_parameters_, selectableSource());
-    if (target_map_ && source.planes.empty() && source.edges.empty()) {
-      source = pointFeatures(viewOf(*registered_), selectableSource());
-    }
-    if (!source.planes.empty() || !source.edges.empty()) {
-      const RegistrationReport report = registerByFeatures(guess, source);
-      if (target_map_ || source_features_) {
-        return report;
-      }
-      if (report.hasConverged()) {
-        return finishByPoints(report);
-      }
-    }
-  }
-  return registerByPoints(guess, iterationLimit(), true);
+  const bool by_features = target_map_ || (source_features_ && targetFeatures() != nullptr);
+  return by_features ? registerByFeatures(guess) : registerByPoints(guess);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
