@@ -53,7 +53,8 @@ std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uin
   return usable;
 }
 
-CloudLevel makeLevel(const std::vector<Eigen::Vector3f>& points, const std::vector<int>& numbers, int threads)
+/// Without shapes.
+CloudLevel bareLevel(const std::vector<Eigen::Vector3f>& points, const std::vector<int>& numbers)
 {
   CloudLevel level;
   level.tree = PointTree(points);
@@ -61,6 +62,11 @@ CloudLevel makeLevel(const std::vector<Eigen::Vector3f>& points, const std::vect
   for (const int i : level.tree.order()) {
     level.number.push_back(numbers[static_cast<std::size_t>(i)]);
   }
+  return level;
+}
+
+CloudLevel withShapes(CloudLevel level, int threads)
+{
   LocalShapes shapes = findLocalShapes(level.tree, threads);
   level.shapes = std::move(shapes.shape);
   level.spacing = shapes.spacing;
@@ -129,7 +135,7 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
 CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 {
   const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
-  CloudLevel level = makeLevel(means, numbers, threads);
+  CloudLevel level = withShapes(bareLevel(means, numbers), threads);
   level.rounding = finer.rounding;
   level.voxel = voxel;
   return level;
@@ -139,8 +145,11 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
     : threads_(threads)
 {
   const Points points = takePoints(cloud, selectable);
-  full_ = makeLevel(points.position, points.number, threads);
-  full_.rounding = kFloatRounding * points.largest;
+  CloudLevel all = bareLevel(points.position, points.number);
+  all.rounding = kFloatRounding * points.largest;
+  const Sampling sampling = findSampling(all.tree);
+  const bool thins = sampling.in_lines && sampling.spacing > 0.0 && all.tree.size() > kCoarsestPoints;
+  full_ = thins ? thinnedLevel(all, kFirstVoxel * sampling.spacing, threads) : withShapes(std::move(all), threads);
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const

@@ -41,6 +41,14 @@ struct LocalShapes {
   double spacing = 0.0;  ///< typical distance of neighbours on a surface, m; 0 if all points are equal
 };
 
+/// How a cloud was sampled, as some of its points show it.
+struct Sampling {
+  double spacing = 0.0;   ///< as of LocalShapes
+  bool in_lines = false;  ///< neighbourhoods are pieces of the sensor's scan lines rather than of surfaces
+};
+
+[[nodiscard]] Sampling findSampling(const PointTree& tree);
+
 [[nodiscard]] LocalShapes findLocalShapes(const PointTree& tree, int threads);
 
 }  // namespace pcl_floam
