@@ -1,6 +1,5 @@
 /// \file cloud_registration.h
-/// Registration of clouds of any origin, for every point type: the core of \ref EdgePlaneRegistration for clouds
-/// without scan lines.
+/// Registration of clouds of any origin, for every point type: the core of \ref EdgePlaneRegistration for two clouds.
 #pragma once
 
 #include <pcl_floam/common/cloud_view.h>
@@ -19,8 +18,10 @@ namespace pcl_floam {
 class CloudPyramid;
 
 /// A cloud made ready for registration: points about their centroid, a search tree, the shape around each point, and
-/// thinned versions of all that, made when they are first needed. It does not depend on what it was registered with,
-/// and may be registered in several threads at a time.
+/// thinned versions of all that, made when they are first needed. Where a scanner's points lie so much closer along its
+/// scan lines than across them that neighbourhoods show these and no surfaces, the means of its points within voxels
+/// stand for them from the beginning. It does not depend on what it was registered with, and may be registered in
+/// several threads at a time.
 class PreparedCloud {
 public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
@@ -59,8 +60,8 @@ struct CloudIteration {
 struct CloudRegistrationRun {
   SE3 guess;  ///< target_T_source
   int threads = 1;
-  /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
-  /// iterations are asked for that it is them that matter (below 4).
+  /// On the full clouds, >= 1. Thinned clouds are registered first, unless so few iterations are asked for that it is
+  /// them that matter (below 4).
   int max_iterations = 30;
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
   double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
