@@ -54,7 +54,8 @@ public:
 ///   surfaces is thinned to the means of its points within voxels throughout.
 /// - A map set by setInputTargetMap(), or the target's features where setSourceFeatures() was called: with features,
 /// the
-///   paper's way (\ref registerFeatures), from a guess that is close. They are those set, or the source's own.
+///   paper's way (\ref registerFeatures), from a guess that is close. They are those set, or the source's own. Of a
+///   cloud without scan lines, all points stand for planes.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
 /// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
@@ -142,18 +143,12 @@ protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
-  /// What the target cloud was turned into, when it was first needed; kept until the target changes.
-  struct Target {
-    std::unique_ptr<KeyframeVoxelMap> features;  ///< of a cloud with scan lines
-    std::unique_ptr<PreparedCloud> points;
-  };
-
   void forgetResult();
   void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
-  [[nodiscard]] FeatureSet sourceFeatures() const;
-  [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
+  [[nodiscard]] FeatureSet featuresOf(const CloudView& cloud, const std::vector<std::uint8_t>& selectable) const;
+  [[nodiscard]] const KeyframeVoxelMap& targetFeatures();
   [[nodiscard]] const PreparedCloud& targetPoints();
   [[nodiscard]] bool hasSearchOfItsOwn() const;
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
@@ -181,7 +176,9 @@ private:
   KeyframeVoxelMap::ConstPtr target_map_;
   PointCloudTargetConstPtr map_cloud_;   ///< the target while it stands in for a map
   PointCloudSourceConstPtr registered_;  ///< the source as the guess bends it, while align() runs
-  std::shared_ptr<Target> prepared_target_;
+  // What the target cloud was turned into, when it was first needed; kept until the target changes.
+  std::shared_ptr<const KeyframeVoxelMap> target_features_;
+  std::shared_ptr<const PreparedCloud> target_points_;
   RegistrationReport report_;
   int threads_ = 1;
   pcl::IndicesPtr given_indices_;  ///< by the user, if some of them are out of range

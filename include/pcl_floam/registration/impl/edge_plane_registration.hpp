@@ -27,46 +27,36 @@ std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar
   return maskOf(*this->indices_, this->input_->size());
 }
 
-/// Of a source without scan lines that meets a map, all points stand for planes.
+/// Of a cloud without scan lines, all points stand for planes.
 template <typename PointSource, typename PointTarget, typename Scalar>
-FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::sourceFeatures() const
+FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featuresOf(
+    const CloudView& cloud, const std::vector<std::uint8_t>& selectable) const
 {
-  if (source_features_) {
-    return *source_features_;
-  }
-  const CloudView cloud = viewOf(*registered_);
-  const FeatureSet features = scanLineFeatures(cloud, sensor_, feature_parameters_, selectableSource());
-  return features.planes.empty() && features.edges.empty() ? pointFeatures(cloud, selectableSource()) : features;
+  FeatureSet features = scanLineFeatures(cloud, sensor_, feature_parameters_, selectable);
+  return features.planes.empty() && features.edges.empty() ? pointFeatures(cloud, selectable) : features;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
+const KeyframeVoxelMap& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
 {
   if (target_map_) {
-    return target_map_.get();
+    return *target_map_;
   }
-  if (!prepared_target_) {
-    prepared_target_ = std::make_shared<Target>();
-    const FeatureSet features = scanLineFeatures(viewOf(*this->target_), sensor_, feature_parameters_);
-    if (static_cast<int>(features.planes.size() + features.edges.size()) >= parameters_.min_correspondences) {
-      prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
-      prepared_target_->features->insert(features, SE3());
-    }
+  if (!target_features_) {
+    auto map = std::make_shared<KeyframeVoxelMap>();
+    map->insert(featuresOf(viewOf(*this->target_), {}), SE3());
+    target_features_ = map;
   }
-  return prepared_target_->features.get();
+  return *target_features_;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 const PreparedCloud& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetPoints()
 {
-  if (!prepared_target_) {
-    prepared_target_ = std::make_shared<Target>();
+  if (!target_points_) {
+    target_points_ = std::make_shared<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
   }
-  if (!prepared_target_->points) {
-    prepared_target_->points =
-        std::make_unique<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
-  }
-  return *prepared_target_->points;
+  return *target_points_;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -88,8 +78,8 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess)
 {
-  const KeyframeVoxelMap& map = *targetFeatures();
-  const FeatureSet source = sourceFeatures();
+  const KeyframeVoxelMap& map = targetFeatures();
+  const FeatureSet source = source_features_ ? *source_features_ : featuresOf(viewOf(*registered_), selectableSource());
   RegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
@@ -139,8 +129,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     report.termination = Termination::invalid_input;
     return report;
   }
-  const bool by_features = target_map_ || (source_features_ && targetFeatures() != nullptr);
-  return by_features ? registerByFeatures(guess) : registerByPoints(guess);
+  return target_map_ || source_features_ ? registerByFeatures(guess) : registerByPoints(guess);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
