@@ -1,8 +1,8 @@
 #include "registration/cloud_pyramid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -10,8 +10,11 @@ namespace pcl_floam {
 
 namespace {
 
+/// Voxels in which scan lines no longer show, in the spacing along these.
+constexpr double kVoxelOfLines = 2.5;
+
 /// Voxels of the first thinned level, in spacings; each further level has voxels twice as large.
-constexpr double kFirstVoxel = 2.5;
+constexpr double kFirstVoxel = 4.0;
 
 /// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
 constexpr std::size_t kCoarsestPoints = 1500;
@@ -73,25 +76,23 @@ CloudLevel withShapes(CloudLevel level, int threads)
   return level;
 }
 
-/// A voxel's place in the lattice, and a point in it.
-struct VoxelMember {
-  std::array<std::int32_t, 3> voxel;
-  int point;
-};
+/// The number of a point's voxel in the lattice's order, and the point.
+using VoxelMember = std::pair<std::uint64_t, int>;
 
 std::vector<VoxelMember> sortIntoVoxels(const std::vector<Eigen::Vector3f>& points, double voxel_size)
 {
+  constexpr unsigned kBits = 21;
+  constexpr double kHalf = 1U << (kBits - 1U);  // as many voxels on either side of the origin
   std::vector<VoxelMember> members(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint64_t voxel = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double place = std::floor(static_cast<double>(points[i][axis]) / voxel_size);
-      members[i].voxel[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(std::clamp(place, -1e9, 1e9));
+      voxel = voxel << kBits | static_cast<std::uint64_t>(std::clamp(place, -kHalf, kHalf - 1.0) + kHalf);
     }
-    members[i].point = static_cast<int>(i);
+    members[i] = {voxel, static_cast<int>(i)};
   }
-  std::sort(members.begin(), members.end(), [](const VoxelMember& a, const VoxelMember& b) {
-    return a.voxel != b.voxel ? a.voxel < b.voxel : a.point < b.point;
-  });
+  std::sort(members.begin(), members.end());
   return members;
 }
 
@@ -101,14 +102,14 @@ std::pair<Eigen::Vector3f, int> summarize(const std::vector<Eigen::Vector3f>& po
 {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const VoxelMember* member = first; member != last; ++member) {
-    sum += points[static_cast<std::size_t>(member->point)].cast<double>();
+    sum += points[static_cast<std::size_t>(member->second)].cast<double>();
   }
   const Eigen::Vector3f mean = (sum / static_cast<double>(last - first)).cast<float>();
   const VoxelMember* nearest = std::min_element(first, last, [&](const VoxelMember& a, const VoxelMember& b) {
-    return (points[static_cast<std::size_t>(a.point)] - mean).squaredNorm() <
-           (points[static_cast<std::size_t>(b.point)] - mean).squaredNorm();
+    return (points[static_cast<std::size_t>(a.second)] - mean).squaredNorm() <
+           (points[static_cast<std::size_t>(b.second)] - mean).squaredNorm();
   });
-  return {mean, nearest->point};
+  return {mean, nearest->second};
 }
 
 /// The means within voxels, and for each the number of the point nearest to it.
@@ -119,7 +120,7 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
   std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> result;
   for (std::size_t first = 0; first < members.size();) {
     std::size_t last = first + 1;
-    while (last < members.size() && members[last].voxel == members[first].voxel) {
+    while (last < members.size() && members[last].first == members[first].first) {
       ++last;
     }
     const auto [mean, nearest] = summarize(points, &members[first], members.data() + last);
@@ -130,15 +131,44 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
   return result;
 }
 
+CloudLevel bareThinned(const CloudLevel& finer, double voxel)
+{
+  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
+  CloudLevel level = bareLevel(means, numbers);
+  level.rounding = finer.rounding;
+  level.voxel = voxel;
+  return level;
+}
+
+/// A thousand of the points, all over the cloud.
+std::vector<Eigen::Vector3f> someOf(const std::vector<Eigen::Vector3f>& points)
+{
+  constexpr std::size_t kSome = 1000;
+  std::vector<Eigen::Vector3f> some;
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kSome) {
+    some.push_back(points[i]);
+  }
+  return some;
+}
+
+/// Lines that are gone from a cloud once it is thinned are the sensor's scan lines, and the points of one of these lie
+/// on that laser's cone, whatever it hit. Then the thinned cloud takes the place of the one given.
+CloudLevel withoutScanLines(CloudLevel all)
+{
+  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
+  const Sampling sampling = findSampling(all.tree, places);
+  if (!sampling.in_lines || !(sampling.spacing > 0.0)) {
+    return all;
+  }
+  CloudLevel thinned = bareThinned(all, kVoxelOfLines * sampling.spacing);
+  return findSampling(thinned.tree, places).in_lines ? all : thinned;
+}
+
 }  // namespace
 
 CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 {
-  const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
-  CloudLevel level = withShapes(bareLevel(means, numbers), threads);
-  level.rounding = finer.rounding;
-  level.voxel = voxel;
-  return level;
+  return withShapes(bareThinned(finer, voxel), threads);
 }
 
 CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
@@ -147,9 +177,7 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
   const Points points = takePoints(cloud, selectable);
   CloudLevel all = bareLevel(points.position, points.number);
   all.rounding = kFloatRounding * points.largest;
-  const Sampling sampling = findSampling(all.tree);
-  const bool thins = sampling.in_lines && sampling.spacing > 0.0 && all.tree.size() > kCoarsestPoints;
-  full_ = thins ? thinnedLevel(all, kFirstVoxel * sampling.spacing, threads) : withShapes(std::move(all), threads);
+  full_ = withShapes(withoutScanLines(std::move(all)), threads);
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const

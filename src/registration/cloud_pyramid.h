@@ -44,6 +44,7 @@ public:
   /// Root mean square distance of the points from the centroid, m.
   [[nodiscard]] double extent() const { return extent_; }
 
+  /// All points, or, of a cloud in which the sensor's scan lines show, means that are even enough not to show them.
   [[nodiscard]] const CloudLevel& full() const { return full_; }
 
   /// Ever fewer points, in voxels twice as large from level to level: made when they are first asked for, by any

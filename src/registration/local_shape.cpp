@@ -26,8 +26,8 @@ constexpr double kPlaneRatio = 0.1;
 /// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
 constexpr std::size_t kSparsePoints = 1000;
 
-/// A cloud was sampled in lines if so large a part of its neighbourhoods is so narrow, as the second eigenvalue against
-/// the largest: even samples have some at edges, on which clouds without scan lines are seldom that rich.
+/// Points lie in lines where so large a part of the neighbourhoods is so narrow, as the second eigenvalue against the
+/// largest. Evenly sampled surfaces have few, at their edges.
 constexpr double kNarrow = 0.1;
 constexpr double kNarrowPart = 0.25;
 
@@ -109,23 +109,22 @@ private:
 
 }  // namespace
 
-Sampling findSampling(const PointTree& tree)
+Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>& places)
 {
-  constexpr std::size_t kSample = 1000;
   Sampling sampling;
+  if (tree.empty() || places.empty()) {
+    return sampling;
+  }
   std::vector<float> radii;
   std::size_t narrow = 0;
   Neighborhoods neighborhoods(tree, kNeighbors);
-  for (std::size_t i = 0; i < tree.size(); i += 1 + tree.size() / kSample) {
-    const Eigen::Vector3f& point = tree.points()[i];
-    const PrincipalAxes axes = momentsOf(tree, point, neighborhoods.of(point)).axes();
+  for (const Eigen::Vector3f& place : places) {
+    const PrincipalAxes axes = momentsOf(tree, place, neighborhoods.of(place)).axes();
     radii.push_back(neighborhoods.radius());
     narrow += axes.variance[1] < kNarrow * axes.variance[2] ? 1 : 0;
   }
-  if (!radii.empty()) {
-    sampling.spacing = spacingFrom(radii);
-    sampling.in_lines = static_cast<double>(narrow) > kNarrowPart * static_cast<double>(radii.size());
-  }
+  sampling.spacing = spacingFrom(radii);
+  sampling.in_lines = static_cast<double>(narrow) > kNarrowPart * static_cast<double>(places.size());
   return sampling;
 }
 
