@@ -161,7 +161,10 @@ CloudLevel withoutScanLines(CloudLevel all)
     return all;
   }
   CloudLevel thinned = bareThinned(all, kVoxelOfLines * sampling.spacing);
-  return findSampling(thinned.tree, places).in_lines ? all : thinned;
+  if (findSampling(thinned.tree, places).in_lines) {
+    return all;
+  }
+  return thinned;
 }
 
 }  // namespace
