@@ -10,11 +10,9 @@ namespace pcl_floam {
 
 namespace {
 
-/// Voxels in which scan lines no longer show, in the spacing along these.
-constexpr double kVoxelOfLines = 2.5;
-
-/// Voxels of the first thinned level, in spacings; each further level has voxels twice as large.
-constexpr double kFirstVoxel = 4.0;
+/// Voxels of the first thinned level, in spacings; each further level has voxels twice as large. In the first, the scan
+/// lines of common sensors no longer show.
+constexpr double kFirstVoxel = 2.5;
 
 /// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
 constexpr std::size_t kCoarsestPoints = 1500;
@@ -160,7 +158,7 @@ CloudLevel withoutScanLines(CloudLevel all)
   if (!sampling.in_lines || !(sampling.spacing > 0.0)) {
     return all;
   }
-  CloudLevel thinned = bareThinned(all, kVoxelOfLines * sampling.spacing);
+  CloudLevel thinned = bareThinned(all, kFirstVoxel * sampling.spacing);
   if (findSampling(thinned.tree, places).in_lines) {
     return all;
   }
