@@ -10,8 +10,7 @@ namespace pcl_floam {
 
 namespace {
 
-/// Voxels of the first thinned level, in spacings; each further level has voxels twice as large. In the first, the scan
-/// lines of common sensors no longer show.
+/// Voxels of the first thinned level, in spacings; each further level has voxels twice as large.
 constexpr double kFirstVoxel = 2.5;
 
 /// The coarsest level is the first to have fewer points than this: a few milliseconds for all its iterations.
@@ -155,14 +154,19 @@ CloudLevel withoutScanLines(CloudLevel all)
 {
   const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
   const Sampling sampling = findSampling(all.tree, places);
-  if (!sampling.in_lines || !(sampling.spacing > 0.0)) {
+  if (!sampling.in_lines) {
     return all;
   }
-  CloudLevel thinned = bareThinned(all, kFirstVoxel * sampling.spacing);
-  if (findSampling(thinned.tree, places).in_lines) {
-    return all;
+  for (double voxel = kFirstVoxel * sampling.spacing; voxel > 0.0; voxel *= 2.0) {
+    CloudLevel thinned = bareThinned(all, voxel);
+    if (thinned.tree.size() < kCoarsestPoints) {
+      break;
+    }
+    if (!findSampling(thinned.tree, places).in_lines) {
+      return thinned;
+    }
   }
-  return thinned;
+  return all;
 }
 
 }  // namespace
