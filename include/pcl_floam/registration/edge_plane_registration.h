@@ -52,10 +52,9 @@ public:
 ///   (\ref registerClouds), with no length that is not relative to the clouds' spacing. Thinned clouds come first,
 ///   unless fewer than 4 iterations are asked for. A cloud whose points show its sensor's scan lines rather than its
 ///   surfaces is thinned to the means of its points within voxels throughout.
-/// - A map set by setInputTargetMap(), or the target's features where setSourceFeatures() was called: with features,
-/// the
-///   paper's way (\ref registerFeatures), from a guess that is close. They are those set, or the source's own. Of a
-///   cloud without scan lines, all points stand for planes.
+/// - A map set by setInputTargetMap(), or the target's features where setSourceFeatures() was called: with the features
+///   set or the source's own, the paper's way (\ref registerFeatures), from a guess that is close. All points of a
+///   cloud without scan lines stand for planes.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
 /// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
