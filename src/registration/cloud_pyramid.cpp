@@ -1,8 +1,8 @@
 #include "registration/cloud_pyramid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -18,9 +18,6 @@ constexpr std::size_t kCoarsestPoints = 1500;
 
 /// Of a moved point whose coordinates are in single precision, as a share of the largest.
 constexpr double kFloatRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
-
-/// Voxels of a thinned cloud, in extents.
-constexpr double kRoughVoxel = 0.03;
 
 /// Coordinates are bounded so that their squares stay finite in single precision.
 constexpr float kLargest = 1e18F;
@@ -56,7 +53,8 @@ std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uin
   return usable;
 }
 
-CloudLevel makeLevel(const std::vector<Eigen::Vector3f>& points, const std::vector<int>& numbers, int threads)
+/// Without shapes.
+CloudLevel bareLevel(const std::vector<Eigen::Vector3f>& points, const std::vector<int>& numbers)
 {
   CloudLevel level;
   level.tree = PointTree(points);
@@ -64,31 +62,34 @@ CloudLevel makeLevel(const std::vector<Eigen::Vector3f>& points, const std::vect
   for (const int i : level.tree.order()) {
     level.number.push_back(numbers[static_cast<std::size_t>(i)]);
   }
+  return level;
+}
+
+CloudLevel withShapes(CloudLevel level, int threads)
+{
   LocalShapes shapes = findLocalShapes(level.tree, threads);
   level.shapes = std::move(shapes.shape);
   level.spacing = shapes.spacing;
   return level;
 }
 
-/// A voxel's place in the lattice, and a point in it.
-struct VoxelMember {
-  std::array<std::int32_t, 3> voxel;
-  int point;
-};
+/// The number of a point's voxel in the lattice's order, and the point.
+using VoxelMember = std::pair<std::uint64_t, int>;
 
 std::vector<VoxelMember> sortIntoVoxels(const std::vector<Eigen::Vector3f>& points, double voxel_size)
 {
+  constexpr unsigned kBits = 21;
+  constexpr double kHalf = 1U << (kBits - 1U);  // as many voxels on either side of the origin
   std::vector<VoxelMember> members(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint64_t voxel = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const double place = std::floor(static_cast<double>(points[i][axis]) / voxel_size);
-      members[i].voxel[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(std::clamp(place, -1e9, 1e9));
+      voxel = voxel << kBits | static_cast<std::uint64_t>(std::clamp(place, -kHalf, kHalf - 1.0) + kHalf);
     }
-    members[i].point = static_cast<int>(i);
+    members[i] = {voxel, static_cast<int>(i)};
   }
-  std::sort(members.begin(), members.end(), [](const VoxelMember& a, const VoxelMember& b) {
-    return a.voxel != b.voxel ? a.voxel < b.voxel : a.point < b.point;
-  });
+  std::sort(members.begin(), members.end());
   return members;
 }
 
@@ -98,14 +99,14 @@ std::pair<Eigen::Vector3f, int> summarize(const std::vector<Eigen::Vector3f>& po
 {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const VoxelMember* member = first; member != last; ++member) {
-    sum += points[static_cast<std::size_t>(member->point)].cast<double>();
+    sum += points[static_cast<std::size_t>(member->second)].cast<double>();
   }
   const Eigen::Vector3f mean = (sum / static_cast<double>(last - first)).cast<float>();
   const VoxelMember* nearest = std::min_element(first, last, [&](const VoxelMember& a, const VoxelMember& b) {
-    return (points[static_cast<std::size_t>(a.point)] - mean).squaredNorm() <
-           (points[static_cast<std::size_t>(b.point)] - mean).squaredNorm();
+    return (points[static_cast<std::size_t>(a.second)] - mean).squaredNorm() <
+           (points[static_cast<std::size_t>(b.second)] - mean).squaredNorm();
   });
-  return {mean, nearest->point};
+  return {mean, nearest->second};
 }
 
 /// The means within voxels, and for each the number of the point nearest to it.
@@ -116,7 +117,7 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
   std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> result;
   for (std::size_t first = 0; first < members.size();) {
     std::size_t last = first + 1;
-    while (last < members.size() && members[last].voxel == members[first].voxel) {
+    while (last < members.size() && members[last].first == members[first].first) {
       ++last;
     }
     const auto [mean, nearest] = summarize(points, &members[first], members.data() + last);
@@ -127,35 +128,61 @@ std::pair<std::vector<Eigen::Vector3f>, std::vector<int>> voxelMeans(const std::
   return result;
 }
 
-}  // namespace
-
-CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
+CloudLevel bareThinned(const CloudLevel& finer, double voxel)
 {
   const auto [means, numbers] = voxelMeans(finer.tree.points(), finer.number, voxel);
-  CloudLevel level = makeLevel(means, numbers, threads);
+  CloudLevel level = bareLevel(means, numbers);
   level.rounding = finer.rounding;
   level.voxel = voxel;
   return level;
 }
 
-CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
-    : CloudPyramid(threads)
+/// A thousand of the points, all over the cloud.
+std::vector<Eigen::Vector3f> someOf(const std::vector<Eigen::Vector3f>& points)
 {
-  const Points points = takePoints(cloud, selectable);
-  full_ = makeLevel(points.position, points.number, threads);
-  full_.rounding = kFloatRounding * points.largest;
+  constexpr std::size_t kSome = 1000;
+  std::vector<Eigen::Vector3f> some;
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kSome) {
+    some.push_back(points[i]);
+  }
+  return some;
 }
 
-std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
-                                                    int threads)
+/// Lines that are gone from a cloud once it is thinned are the sensor's scan lines, and the points of one of these lie
+/// on that laser's cone, whatever it hit. Then the thinned cloud takes the place of the one given.
+CloudLevel withoutScanLines(CloudLevel all)
 {
-  std::unique_ptr<CloudPyramid> pyramid(new CloudPyramid(threads));
-  const Points points = pyramid->takePoints(cloud, selectable);
-  const double voxel_size = std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min());
-  const auto [means, numbers] = voxelMeans(points.position, points.number, voxel_size);
-  pyramid->full_ = makeLevel(means, numbers, threads);
-  pyramid->full_.rounding = kFloatRounding * points.largest;
-  return pyramid;
+  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
+  const Sampling sampling = findSampling(all.tree, places);
+  if (!sampling.in_lines) {
+    return all;
+  }
+  for (double voxel = kFirstVoxel * sampling.spacing; voxel > 0.0; voxel *= 2.0) {
+    CloudLevel thinned = bareThinned(all, voxel);
+    if (thinned.tree.size() < kCoarsestPoints) {
+      break;
+    }
+    if (!findSampling(thinned.tree, places).in_lines) {
+      return thinned;
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
+{
+  return withShapes(bareThinned(finer, voxel), threads);
+}
+
+CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+    : threads_(threads)
+{
+  const Points points = takePoints(cloud, selectable);
+  CloudLevel all = bareLevel(points.position, points.number);
+  all.rounding = kFloatRounding * points.largest;
+  full_ = withShapes(withoutScanLines(std::move(all)), threads);
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const

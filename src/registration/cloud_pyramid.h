@@ -36,10 +36,6 @@ public:
   /// \param selectable one flag per point of the cloud; empty: all
   CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
 
-  /// A pyramid whose level 0 is thinned already, for clouds of which only a rough picture is needed.
-  [[nodiscard]] static std::unique_ptr<CloudPyramid> thinned(const CloudView& cloud,
-                                                             const std::vector<std::uint8_t>& selectable, int threads);
-
   [[nodiscard]] bool empty() const { return full_.tree.empty(); }
 
   /// The centroid, in the cloud's frame.
@@ -48,6 +44,7 @@ public:
   /// Root mean square distance of the points from the centroid, m.
   [[nodiscard]] double extent() const { return extent_; }
 
+  /// All points, or, of a cloud in which the sensor's scan lines show, means that are even enough not to show them.
   [[nodiscard]] const CloudLevel& full() const { return full_; }
 
   /// Ever fewer points, in voxels twice as large from level to level: made when they are first asked for, by any
@@ -61,7 +58,6 @@ private:
     double largest = 0.0;                   ///< m; of the coordinates in the cloud's frame
   };
 
-  explicit CloudPyramid(int threads) : threads_(threads) {}
   Points takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
 
   CloudLevel full_;

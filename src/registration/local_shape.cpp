@@ -26,16 +26,28 @@ constexpr double kPlaneRatio = 0.1;
 /// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
 constexpr std::size_t kSparsePoints = 1000;
 
+/// Points lie in lines where so large a part of the neighbourhoods is so narrow, as the second eigenvalue against the
+/// largest. Evenly sampled surfaces have few, at their edges.
+constexpr double kNarrow = 0.1;
+constexpr double kNarrowPart = 0.25;
+
+/// About a point.
+PointMoments momentsOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
+{
+  PointMoments moments;
+  for (int i = 0; i < neighbors.count(); ++i) {
+    moments.add((tree.points()[static_cast<std::size_t>(neighbors.index(i))] - point).cast<double>());
+  }
+  return moments;
+}
+
 LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
   LocalShape shape;
   if (neighbors.count() < 4) {
     return shape;
   }
-  PointMoments moments;
-  for (int i = 0; i < neighbors.count(); ++i) {
-    moments.add((tree.points()[static_cast<std::size_t>(neighbors.index(i))] - point).cast<double>());
-  }
+  const PointMoments moments = momentsOf(tree, point, neighbors);
   const PrincipalAxes axes = moments.axes();
   if (!(axes.variance[2] > 0.0)) {
     return shape;
@@ -96,6 +108,25 @@ private:
 };
 
 }  // namespace
+
+Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>& places)
+{
+  Sampling sampling;
+  if (tree.empty() || places.empty()) {
+    return sampling;
+  }
+  std::vector<float> radii;
+  std::size_t narrow = 0;
+  Neighborhoods neighborhoods(tree, kNeighbors);
+  for (const Eigen::Vector3f& place : places) {
+    const PrincipalAxes axes = momentsOf(tree, place, neighborhoods.of(place)).axes();
+    radii.push_back(neighborhoods.radius());
+    narrow += axes.variance[1] < kNarrow * axes.variance[2] ? 1 : 0;
+  }
+  sampling.spacing = spacingFrom(radii);
+  sampling.in_lines = static_cast<double>(narrow) > kNarrowPart * static_cast<double>(places.size());
+  return sampling;
+}
 
 LocalShapes findLocalShapes(const PointTree& tree, int threads)
 {

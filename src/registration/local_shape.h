@@ -41,6 +41,14 @@ struct LocalShapes {
   double spacing = 0.0;  ///< typical distance of neighbours on a surface, m; 0 if all points are equal
 };
 
+/// How a tree's points lie around some places.
+struct Sampling {
+  double spacing = 0.0;   ///< as of LocalShapes
+  bool in_lines = false;  ///< rather than over surfaces
+};
+
+[[nodiscard]] Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>& places);
+
 [[nodiscard]] LocalShapes findLocalShapes(const PointTree& tree, int threads);
 
 }  // namespace pcl_floam

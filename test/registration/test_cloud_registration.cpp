@@ -1,4 +1,4 @@
-// Laws of the registration of clouds without scan lines.
+// Laws of the registration of two clouds.
 #include "support/registration_clouds.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
@@ -223,6 +223,31 @@ TEST(CloudRegistration, WithoutStructureItIsDrawnPointToPoint)
   ASSERT_TRUE(result.converged);
   EXPECT_LT(difference(*source, result.transform, truth), 1e-4);
   EXPECT_GT(result.report.point_correspondences, result.report.edge_correspondences);
+}
+
+TEST(CloudRegistration, ScanLinesAreNoStructureOfTheScene)
+{
+  // Points of one laser lie on its cone: taken for a plane or a line, they hold the sensor where it was.
+  const SE3 truth = exp((Vector6() << 0.1, -0.05, 0.02, 0.01, -0.01, 0.05).finished());
+  for (const int columns : {1800, 3600}) {
+    Lidar lidar;
+    lidar.rings = 16;
+    lidar.columns = columns;
+    const auto scan = [&lidar](unsigned seed, const SE3& world_T_sensor) {
+      std::mt19937 random(seed);
+      auto cloud = pcl::make_shared<Cloud>();
+      for (const Return& r : sweepRoom(Room(), lidar, world_T_sensor)) {
+        Point point;
+        point.getVector3fMap() = (r.point + uniform(random, 0.02) * r.point.normalized()).cast<float>();
+        cloud->push_back(point);
+      }
+      return cloud;
+    };
+    const auto source = scan(2, truth);
+    const Result result = align(source, scan(1, SE3()));
+    ASSERT_TRUE(result.converged) << columns;
+    EXPECT_LT(difference(*source, result.transform, truth.matrix()), 0.01) << columns;
+  }
 }
 
 TEST(CloudRegistration, TheReportTellsLinesFromPlanes)

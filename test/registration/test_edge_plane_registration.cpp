@@ -128,6 +128,22 @@ TEST(EdgePlaneRegistration, RegistersFeaturesWithAMap)
   EXPECT_EQ(registration.report().termination, Termination::converged);
 }
 
+TEST(EdgePlaneRegistration, FeaturesMeetThoseOfTheTargetAlsoAfterTwoCloudsHaveMet)
+{
+  Registration registration;
+  registration.setInputSource(scanFrom(kOther));
+  registration.setInputTarget(scanFrom(SE3()));
+  Cloud output;
+  registration.align(output);
+  EXPECT_GT(registration.report().point_correspondences, 0);
+  registration.setSourceFeatures(featuresOf(toCloud(sweepRoom(Room(), Lidar(), kOther))));
+  registration.align(output);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_EQ(registration.report().point_correspondences, 0);
+  EXPECT_GT(registration.report().edge_correspondences, 0);
+  EXPECT_LT((registration.getFinalTransformation() - kOther.matrix<float>()).norm(), 0.05F);
+}
+
 TEST(EdgePlaneRegistration, AnotherMapOrNoneReplacesTheOneBefore)
 {
   const auto mapOf = [](const SE3& world_T_sensor) {
