@@ -4,6 +4,7 @@ namespace pcl_floam {
 
 CloudAlignment::CloudAlignment(const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run)
     : run_(run),
+      factors_{run.factors, SE3()},
       extent_(source.extent()),
       source_T_origin_(Eigen::Matrix3d::Identity(), source.origin()),
       target_T_origin_(Eigen::Matrix3d::Identity(), target.origin()),
@@ -14,7 +15,7 @@ CloudAlignment::CloudAlignment(const CloudPyramid& source, const CloudPyramid& t
 Termination CloudAlignment::align(LevelAlignment& alignment, int most, double epsilon, bool watched)
 {
   for (iterations_ = 0; iterations_ < most;) {
-    sums_ = alignment.evaluate(pose_, [this](const SE3& pose) { return toFrames(pose); });
+    sums_ = evaluate(alignment);
     ++iterations_;
     if (sums_.count() < run_.min_correspondences) {
       return Termination::too_few_correspondences;
@@ -29,6 +30,15 @@ Termination CloudAlignment::align(LevelAlignment& alignment, int most, double ep
     }
   }
   return Termination::iteration_limit;
+}
+
+NormalEquations CloudAlignment::evaluate(LevelAlignment& level) const
+{
+  NormalEquations sums = level.evaluate(pose_, [this](const SE3& pose) { return toFrames(pose); });
+  const PoseEquations known = factors_.at(toFrames(pose_), arm());
+  sums.information += sums.residualVariance() * known.information;  // as so many matches of weight 1
+  sums.gradient += sums.residualVariance() * known.gradient;
+  return sums;
 }
 
 void CloudAlignment::move(const Vector6& perturbation)

@@ -5,6 +5,7 @@
 #include "registration/cloud_pyramid.h"
 #include "registration/information_analysis.h"
 #include "registration/level_alignment.h"
+#include "registration/pose_factors.h"
 
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/registration/cloud_registration.h>
@@ -26,6 +27,9 @@ public:
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
   void setPose(const SE3& pose) { pose_ = pose; }
+
+  /// What the matches of a level and the factors say of the present pose.
+  [[nodiscard]] NormalEquations evaluate(LevelAlignment& level) const;
 
   /// Moves by a perturbation, which turns about the source's centroid.
   void move(const Vector6& perturbation);
@@ -50,6 +54,7 @@ private:
   void lockTranslation();
 
   const CloudRegistrationRun& run_;
+  PoseFactors factors_;
   double extent_;
   Motions held_ = Motions(6, 0);
   SE3 source_T_origin_;

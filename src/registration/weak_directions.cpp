@@ -88,8 +88,7 @@ double WeakDirections::pull(const Vector6& motion, double way)
 {
   const SE3 pose = alignment_.pose();
   alignment_.move(way * motion);
-  const NormalEquations sums =
-      level_.evaluate(alignment_.pose(), [this](const SE3& p) { return alignment_.toFrames(p); });
+  const NormalEquations sums = alignment_.evaluate(level_);
   alignment_.setPose(pose);
   return motion.dot(sums.gradient);
 }

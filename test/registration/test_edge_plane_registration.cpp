@@ -59,6 +59,47 @@ TEST(EdgePlaneRegistration, RegistersAnObjectOfAnySize)
   }
 }
 
+/// A floor and a wall say nothing of the way along both.
+TEST(EdgePlaneRegistration, AFactorTellsWhatTheCloudsDoNot)
+{
+  class Along : public PoseFactor {
+  public:
+    void addTo(const SE3& target_T_source, PoseEquations& equations) const override
+    {
+      equations.add(target_T_source.translation.x(), Vector6::Unit(0), 1e-6);
+    }
+  };
+  const auto corner = [](unsigned seed) {
+    std::mt19937 random(seed);
+    auto cloud = pcl::make_shared<Cloud>();
+    for (int i = 0; i < 20000; ++i) {
+      Eigen::Vector3d place(uniform(random, 2.0), uniform(random, 2.0), uniform(random, 2.0));
+      place[i % 2 == 0 ? 1 : 2] = uniform(random, 0.002) - 2.0;
+      Point point;
+      point.getVector3fMap() = (place + farOff()).cast<float>();
+      cloud->push_back(point);
+    }
+    return cloud;
+  };
+  Registration registration;
+  registration.setInputSource(corner(1));
+  registration.setInputTarget(corner(2));
+  Cloud output;
+  Eigen::Matrix4f guess = Eigen::Matrix4f::Identity();
+  guess(0, 3) = 0.05F;
+  registration.align(output, guess);
+  EXPECT_NEAR(registration.getFinalTransformation()(0, 3), 0.05, 0.01);
+  EXPECT_GT(std::sqrt(registration.report().covariance(0, 0)), 0.1);
+  registration.addFactor(std::make_shared<Along>());
+  registration.align(output, guess);
+  ASSERT_TRUE(registration.hasConverged());
+  EXPECT_NEAR(registration.getFinalTransformation()(0, 3), 0.0, 5e-3);
+  EXPECT_LT(std::sqrt(registration.report().covariance(0, 0)), 0.02);
+  EXPECT_THROW(registration.addFactor(nullptr), std::invalid_argument);
+  registration.clearFactors();
+  EXPECT_TRUE(registration.getFactors().empty());
+}
+
 TEST(EdgePlaneRegistration, TheResultScalesWithTheScene)
 {
   // By powers of two, so that nothing but absolute lengths in the code can make a difference.

@@ -4,6 +4,7 @@
 
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/registration/pose_factor.h>
 #include <pcl_floam/registration/registration_parameters.h>
 #include <pcl_floam/registration/registration_report.h>
 
@@ -68,6 +69,7 @@ struct CloudRegistrationRun {
   int min_correspondences = 3;
   bool reciprocal = false;  ///< only matches that are each other's nearest
   RobustKernel kernel = RobustKernel::cauchy;
+  std::vector<PoseFactor::ConstPtr> factors;  ///< what else is known of the pose
   DegreesOfFreedom locked = {};  ///< these keep the guess's value: translations exactly, see RegistrationParameters
   bool wants_matches = false;
   /// Takes away from the matches of each iteration what it does not want; source points are at \p target_T_source.

@@ -121,6 +121,12 @@ public:
   void setInputTargetMap(const KeyframeVoxelMap::ConstPtr& map);
   [[nodiscard]] KeyframeVoxelMap::ConstPtr getInputTargetMap() const { return target_map_; }
 
+  /// Something else that is known of the pose (`target_T_source`), beside the clouds; asked in every iteration.
+  /// \throws std::invalid_argument if it is null
+  void addFactor(const PoseFactor::ConstPtr& factor);
+  void clearFactors();
+  [[nodiscard]] const std::vector<PoseFactor::ConstPtr>& getFactors() const { return factors_; }
+
   /// As ICP's: an empty cloud is refused with an error message, and the one before stays.
   void setInputSource(const PointCloudSourceConstPtr& cloud) override;
   /// See setInputSource(). The cloud is new each time, also under the same pointer.
@@ -169,6 +175,7 @@ private:
   [[nodiscard]] PointCloudSource movedSource(const SE3& target_T_source);
 
   RegistrationParameters parameters_;
+  std::vector<PoseFactor::ConstPtr> factors_;
   FeatureParameters feature_parameters_;
   SensorModel sensor_;
   std::optional<FeatureSet> source_features_;

@@ -76,6 +76,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   RegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
+  run.factors = factors_;
   if (this->transformation_epsilon_ > 0.0) {
     run.translation_epsilon = std::min(run.translation_epsilon, std::sqrt(this->transformation_epsilon_));
   }
@@ -109,6 +110,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
   run.reciprocal = this->use_reciprocal_correspondence_;
   run.kernel = parameters_.kernel;
+  run.factors = factors_;
   run.locked = parameters_.locked;
   run.wants_matches = this->update_visualizer_ != nullptr || hasCriteriaOfItsOwn();
   if (!this->correspondence_rejectors_.empty()) {

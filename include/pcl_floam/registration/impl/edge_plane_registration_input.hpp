@@ -4,6 +4,7 @@
 #include <pcl_floam/map/finite_search.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <thread>
 #include <typeinfo>
 
@@ -66,6 +67,23 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearSourceFeature
 {
   forgetResult();
   source_features_.reset();
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::addFactor(const PoseFactor::ConstPtr& factor)
+{
+  if (!factor) {
+    throw std::invalid_argument("registration: the factor is null");
+  }
+  forgetResult();
+  factors_.push_back(factor);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearFactors()
+{
+  forgetResult();
+  factors_.clear();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
