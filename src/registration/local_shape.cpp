@@ -32,7 +32,7 @@ constexpr double kNarrow = 0.1;
 constexpr double kNarrowPart = 0.25;
 
 /// About a point.
-PointMoments momentsOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
+PointMoments momentsAround(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
   PointMoments moments;
   for (int i = 0; i < neighbors.count(); ++i) {
@@ -47,7 +47,7 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
   if (neighbors.count() < 4) {
     return shape;
   }
-  const PointMoments moments = momentsOf(tree, point, neighbors);
+  const PointMoments moments = momentsAround(tree, point, neighbors);
   const PrincipalAxes axes = moments.axes();
   if (!(axes.variance[2] > 0.0)) {
     return shape;
@@ -119,7 +119,7 @@ Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>&
   std::size_t narrow = 0;
   Neighborhoods neighborhoods(tree, kNeighbors);
   for (const Eigen::Vector3f& place : places) {
-    const PrincipalAxes axes = momentsOf(tree, place, neighborhoods.of(place)).axes();
+    const PrincipalAxes axes = momentsAround(tree, place, neighborhoods.of(place)).axes();
     radii.push_back(neighborhoods.radius());
     narrow += axes.variance[1] < kNarrow * axes.variance[2] ? 1 : 0;
   }
