@@ -75,6 +75,10 @@ struct WorldOptions {
 /// A motorway along a trajectory: rails, bushes and trees, signs, traffic beside real motion.
 [[nodiscard]] World makeMotorway(const WorldOptions& options);
 
+/// A yard or an open place: a few buildings far apart at its edge, parked vehicles, trees, poles, people; a round of
+/// more than 100 m at up to 3 m/s.
+[[nodiscard]] World makeYard(const WorldOptions& options);
+
 /// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
 [[nodiscard]] World makeCorridor(const WorldOptions& options);
 

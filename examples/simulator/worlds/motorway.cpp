@@ -17,13 +17,13 @@ constexpr double kRailClear = 2.5;        // m that rails and their posts keep f
 
 /// What the generator draws from; as it stands, for \ref Family::tune.
 struct MotorwayRanges {
-  Interval right_rail{4.0, 7.0};  ///< m from the sensor's lane
-  double right_rail_chance = 0.7;
+  Interval right_rail{4.0, 9.0};  ///< m from the sensor's lane
+  double right_rail_chance = 0.5;
   int lanes = 2;                      ///< at most, in the sensor's direction: ramps have fewer than the motorway
   double concrete = 0.2;              ///< of the barriers; the others are steel rails
   Interval hard_shoulder{1.0, 3.0};   ///< m to the right of the sensor's lane
   Interval median{1.5, 4.0};          ///< m between the two directions
-  double median_bushes = 0.3;         ///< chance that bushes grow there
+  double median_bushes = 0.5;         ///< chance that bushes grow there
   Interval bush_gap{2.0, 6.0};        ///< m along the road
   Interval bush_aside{9.0, 30.0};     ///< m from the sensor's lane
   Interval tree_gap{5.0, 20.0};       ///< m
@@ -42,16 +42,16 @@ VergeRanges vergeRangesOf(Family family)
     const bool report = family == Family::report;
     ranges.level = report ? Interval{0.5, 10.0} : Interval{1.0, 8.0};
     ranges.ditch = report ? Interval{0.1, 1.0} : Interval{0.1, 0.8};
-    ranges.bank = report ? Interval{-1.5, 5.0} : Interval{-1.0, 4.0};
+    ranges.bank = report ? Interval{-1.0, 5.0} : Interval{-0.5, 4.0};
     ranges.slope = report ? Interval{4.0, 25.0} : Interval{4.0, 20.0};
     ranges.rough = report ? Interval{0.02, 0.15} : Interval{0.02, 0.12};
     ranges.grass = report ? Interval{0.05, 0.6} : Interval{0.05, 0.5};
     ranges.tufts = report ? Interval{0.2, 3.0} : Interval{0.3, 2.5};
-    ranges.belt_chance = report ? 0.85 : 0.88;
-    ranges.belt = report ? Interval{1.0, 20.0} : Interval{1.0, 15.0};
-    ranges.belt_depth = report ? Interval{3.0, 30.0} : Interval{3.0, 25.0};
-    ranges.cover = report ? Interval{0.2, 2.5} : Interval{0.3, 2.0};
-    ranges.height = report ? Interval{1.0, 8.0} : Interval{1.0, 6.0};
+    ranges.belt_chance = report ? 0.95 : 0.96;
+    ranges.belt = report ? Interval{1.0, 18.0} : Interval{1.0, 14.0};
+    ranges.belt_depth = report ? Interval{5.0, 35.0} : Interval{5.0, 25.0};
+    ranges.cover = report ? Interval{0.5, 3.0} : Interval{0.6, 2.5};
+    ranges.height = report ? Interval{1.2, 8.0} : Interval{1.3, 6.0};
   }
   return ranges;
 }
@@ -69,7 +69,7 @@ MotorwayRanges motorwayRangesOf(Family family)
     ranges.hard_shoulder = report ? Interval{0.5, 4.0} : Interval{0.5, 3.5};
     ranges.gantry_gap = report ? Interval{200.0, 1500.0} : Interval{200.0, 1000.0};
     ranges.median = report ? Interval{1.0, 14.0} : Interval{1.0, 8.0};
-    ranges.median_bushes = report ? 0.4 : 0.35;
+    ranges.median_bushes = 0.5;
     ranges.bush_gap = report ? Interval{2.0, 15.0} : Interval{2.0, 10.0};
     ranges.bush_aside = report ? Interval{8.0, 50.0} : Interval{8.0, 40.0};
     ranges.tree_gap = report ? Interval{4.0, 40.0} : Interval{5.0, 30.0};
@@ -108,8 +108,10 @@ void addBarrier(TriangleMesh& mesh, Random& random, const Way& way, double left,
     return;
   }
   addStrip(mesh, random, way.line, way.terrain, all, {{left, 0.45}, {left + 0.06, 0.6}, {left, 0.75}}, 0.0, 0.6);
-  for (double station = 0.0; station < all.to; station += 4.0) {
-    addBox(mesh, besideWay(way, station, left), {0.1, 0.08, 0.7}, 0.5);
+  // Posts stand twice as close where the rail must not give way.
+  const double between = random.chance(0.5) ? 2.0 : 4.0;
+  for (double station = 0.0; station < all.to; station += between) {
+    addBox(mesh, besideWay(way, station, left), {0.1, 0.12, 0.7}, 0.5);
   }
 }
 

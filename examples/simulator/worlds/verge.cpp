@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kDitchWidth = 6.0;   // m across: wide enough for the ground's raster to show it
 constexpr double kGrassReach = 25.0;  // m from the carriageway: farther away no beam tells grass from ground
+constexpr double kTrunks = 0.3;       // of the bushes are young trees
 constexpr double kGrowthClear = 3.0;  // m from the way that nothing grows in
 
 /// 0 below 0, 1 above 1, smooth between.
@@ -82,6 +83,9 @@ void Verge::plant(TriangleMesh& mesh, Random& random, const Way& way) const
       const int twigs = 60 + static_cast<int>(150.0 * wide * half);
       addFoliage(mesh, random, foot * upright(0.0, 0.0, 0.8 * half), {wide, wide, half}, 0.15 + 0.05 * half, twigs,
                  0.4);
+      if (random.chance(kTrunks)) {
+        addCylinder(mesh, foot, random.uniform(0.05, 0.2), random.uniform(1.5, 3.0) * half, 0.3, 0.7, 8);
+      }
     }
   }
 }

@@ -8,20 +8,20 @@ namespace pcl_floam::simulator {
 
 /// What one side of a road is drawn from.
 struct VergeRanges {
-  double paved = 0.5;         ///< m beside the carriageway that no grass grows on
-  Interval level{1.5, 6.0};   ///< m of level ground beside the carriageway
-  Interval ditch{0.2, 0.6};   ///< m deep
-  double ditch_chance = 0.5;  ///< that there is one
-  Interval bank{-0.5, 3.0};   ///< m that the ground beyond is higher; below zero the road lies on a dam
-  Interval slope{5.0, 15.0};  ///< m across, from the level ground to the bank's top
-  Interval rough{0.03, 0.1};  ///< m, standard deviation of the ground's height
-  Interval grass{0.1, 0.4};   ///< m high
-  Interval tufts{0.5, 2.0};   ///< of grass, in a square metre
-  double belt_chance = 0.9;   ///< that bushes grow there
-  Interval belt{2.0, 12.0};   ///< m from the carriageway to the first bushes
-  Interval belt_depth{4.0, 20.0};
-  Interval cover{0.5, 1.5};   ///< of the belt's ground, that bushes stand on
-  Interval height{1.0, 5.0};  ///< m, of the tallest bushes
+  double paved = 0.5;              ///< m beside the carriageway that no grass grows on
+  Interval level{1.5, 6.0};        ///< m of level ground beside the carriageway
+  Interval ditch{0.2, 0.6};        ///< m deep
+  double ditch_chance = 0.5;       ///< that there is one
+  Interval bank{0.0, 3.0};         ///< m that the ground beyond is higher; below zero the road lies on a dam
+  Interval slope{5.0, 15.0};       ///< m across, from the level ground to the bank's top
+  Interval rough{0.03, 0.1};       ///< m, standard deviation of the ground's height
+  Interval grass{0.1, 0.4};        ///< m high
+  Interval tufts{0.5, 2.0};        ///< of grass, in a square metre
+  double belt_chance = 0.97;       ///< that bushes grow there
+  Interval belt{2.0, 10.0};        ///< m from the carriageway to the first bushes
+  Interval belt_depth{6.0, 20.0};  ///< m
+  Interval cover{0.7, 2.0};        ///< of the belt's ground, that bushes stand on
+  Interval height{1.5, 5.0};       ///< m, of the tallest bushes
 };
 
 /// One side of a road, as it is drawn.
