@@ -28,7 +28,7 @@ struct SensorErrors {
   double time_jitter = 0.0;        ///< s, standard deviation of when a column is fired from when it is told to be
   double firing_phase = 0.0;       ///< part of a column by which turns begin at other angles than the one before
   double head_wander = 0.0;        ///< rad, standard deviation of the head's angle from what is told of it
-  double sway = 0.0;               ///< rad, standard deviation of roll and pitch of what carries the sensor
+  double sway = 0.0;               ///< rad, standard deviation of roll and pitch of what carries the sensor, slowly
   double glass = 0.0;  ///< part of the gloss of glass and paint that has effect: lost returns, mirror images
 };
 

@@ -37,7 +37,6 @@ OdometryReport reportAt(double x, ScanTimingSource timing)
   report.world_T_sensor.translation.x() = x;
   report.timing_source = timing;
   report.rotation = ScanRotation::clockwise;
-  report.registration.sweep_twist[0] = 0.0;
   return report;
 }
 
