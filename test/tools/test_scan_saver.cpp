@@ -4,6 +4,7 @@
 
 #include "scan_saver.h"
 
+#include <pcl_floam/common/point_types.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <gtest/gtest.h>
@@ -11,23 +12,31 @@
 #include <pcl/conversions.h>
 #include <pcl/point_types.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
 
 namespace pcl_floam::tools {
 namespace {
 
-constexpr float kRadius = 10.0F;  // m
+constexpr double kRadius = 10.0;  // m
 
-/// A ring of points that have no times.
-pcl::PCLPointCloud2 ring()
+/// A scan of sixteen rings, column by column, whose points have no times.
+pcl::PCLPointCloud2 scan()
 {
-  pcl::PointCloud<pcl::PointXYZ> cloud;
-  for (int i = 0; i < 360; ++i) {
-    const auto angle = static_cast<float>(M_PI * (180.0 - i) / 180.0);
-    cloud.push_back({kRadius * std::cos(angle), kRadius * std::sin(angle), 0.0F});
+  pcl::PointCloud<PointXYZIRT> cloud;
+  for (int column = 0; column < 900; ++column) {
+    const double azimuth = M_PI - 2.0 * M_PI * column / 900.0;
+    for (int ring = 0; ring < 16; ++ring) {
+      cloud.push_back({static_cast<float>(kRadius * std::cos(azimuth)), static_cast<float>(kRadius * std::sin(azimuth)),
+                       static_cast<float>(0.35 * (ring - 8)), 0.0F, static_cast<std::uint16_t>(ring), 0.0F});
+    }
   }
   pcl::PCLPointCloud2 message;
   pcl::toPCLPointCloud2(cloud, message);
+  const auto isTime = [](const pcl::PCLPointField& field) { return field.name == "time"; };
+  message.fields.erase(std::remove_if(message.fields.begin(), message.fields.end(), isTime), message.fields.end());
   return message;
 }
 
@@ -40,7 +49,7 @@ OdometryReport reportAt(double x, ScanTimingSource timing)
   return report;
 }
 
-/// m, of a saved scan's points from the ring.
+/// m, by which a saved scan's points lie off the cylinder on which they were measured.
 double greatestMove(const std::filesystem::path& file)
 {
   pcl::PCLPointCloud2 message;
@@ -56,12 +65,10 @@ double greatestMove(const std::filesystem::path& file)
 
 class ScanSaving : public testing::Test {
 protected:
-  ScanSaving() { parameters_.structure = ScanStructure::space; }
-
-  void save(ScanSaver& saver, std::size_t scan, const OdometryReport& report)
+  void save(ScanSaver& saver, std::size_t number, const OdometryReport& report)
   {
-    pcl::PCLPointCloud2 cloud = ring();
-    saver.save(scan, 0.1 * static_cast<double>(scan), cloud, report, parameters_);
+    pcl::PCLPointCloud2 cloud = scan();
+    saver.save(number, 0.1 * static_cast<double>(number), cloud, report, parameters_);
   }
 
   OdometryParameters parameters_;
