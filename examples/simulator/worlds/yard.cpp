@@ -140,6 +140,9 @@ World makeYard(const WorldOptions& options)
   DriveStyle style;
   style.speed = 3.0;
   Random own = randomOfPath(options, random);
+  if (options.path > 1) {
+    style.left = (options.path % 2 == 0 ? -1.0 : 1.0) * own.uniform(0.5, 1.2);
+  }
   world.sensor_motion = drive(way, style, {1.8, 2.0, 0.003, 0.004}, terrain, own);
   world.acceleration = 3.0;
   addPeople(world, random, ranges, terrain, half);
