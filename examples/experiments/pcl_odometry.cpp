@@ -8,17 +8,19 @@
 #include "command_line.h"
 #include "result_writer.h"
 
+#include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/scan_points.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/trajectory.h>
 
-#include <pcl/conversions.h>
 #include <pcl/filters/voxel_grid.h>
 
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <limits>
 
 using namespace pcl_floam;
 using namespace pcl_floam::experiments;
@@ -32,8 +34,9 @@ struct Options {
   std::filesystem::path output;
   std::string method = "gicp";
   RegistrationSettings registration;
-  double leaf = 0.25;      // m
-  double min_range = 0.5;  // m
+  double leaf = 0.25;                // m
+  double min_range = 0.5;            // m
+  double vertical_correction = 0.0;  // degrees
   std::size_t max_scans = 0;
 };
 
@@ -51,20 +54,22 @@ void addOptions(CLI::App& app, Options& o)
       ->capture_default_str();
   app.add_option("--iterations", o.registration.iterations, "most iterations")->capture_default_str();
   app.add_option("--min-range", o.min_range, "m, nearer points are left out")->capture_default_str();
+  app.add_option("--vertical-correction", o.vertical_correction,
+                 "degrees by which every point is turned up; KITTI's HDL-64 needs about 0.205")
+      ->capture_default_str();
   app.add_option("--max-scans", o.max_scans, "use at most so many scans; 0 uses all")->capture_default_str();
 }
 
 /// What remains of a scan after removal of what is not finite or too near, thinned.
 Cloud::Ptr thinned(const pcl::PCLPointCloud2& raw, const Options& o)
 {
-  Cloud all;
-  pcl::fromPCLPointCloud2(raw, all);
+  const CloudView view = viewOf(raw);
+  const double any_range = std::numeric_limits<float>::max();
+  std::vector<ScanPoint> points;
+  collectPoints({view, ScanLines(), ScanTiming(), o.min_range, any_range, o.vertical_correction}, points);
   Cloud::Ptr good(new Cloud);
-  for (const pcl::PointXYZ& point : all) {
-    const float range = point.getVector3fMap().norm();
-    if (std::isfinite(range) && range >= static_cast<float>(o.min_range)) {
-      good->push_back(point);
-    }
+  for (const ScanPoint& point : points) {
+    good->push_back({point.x, point.y, point.z});
   }
   Cloud::Ptr result(new Cloud);
   pcl::VoxelGrid<pcl::PointXYZ> grid;

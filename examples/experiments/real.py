@@ -1,13 +1,15 @@
 """Real drives and their simulated twins: what 10_real.sh judges beyond what all experiments do."""
 
-import array
 import json
 import math
 import pathlib
+import random
 import subprocess
-import sys
 
-BYTES_OF_POINT = 16  # KITTI's x, y, z and intensity
+# What the makers of KITTI's drives state of their GPS and inertial sensor, an OXTS RT3003: A. Geiger, P. Lenz, C. Stiller
+# and R. Urtasun, "Vision meets Robotics: The KITTI Dataset", IJRR 2013
+GPS_POSITION = 0.02  # m
+GPS_HEADING = 0.1  # degrees
 
 
 def evaluated(options, folder, *words):
@@ -24,18 +26,6 @@ def at_rest(options, folder):
     return {"wander": found.get("wander_m"), "jitter": found.get("jitter_rms_m")}
 
 
-def raised(points, degrees):
-    """KITTI's points with every laser's elevation raised: what --vertical-correction of pcl_floam_odometry does."""
-    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
-    result = array.array("f", points)
-    for i in range(0, len(points) - 3, 4):
-        x, y, z = points[i], points[i + 1], points[i + 2]
-        flat = math.hypot(x, y)
-        scale = cosine - z * sine / flat if flat > 0.0 else 1.0
-        result[i], result[i + 1], result[i + 2] = x * scale, y * scale, z * cosine + flat * sine
-    return result
-
-
 def first_scans(folder, truth, target, count):
     """A folder of the first scans of another, and a file of their true poses (None for None)."""
     (target / "scans").mkdir(parents=True, exist_ok=True)
@@ -47,22 +37,6 @@ def first_scans(folder, truth, target, count):
         return target / "scans", None
     (target / "poses.txt").write_text("".join(truth.read_text().splitlines(keepends=True)[:count]))
     return target / "scans", target / "poses.txt"
-
-
-def raised_scans(folder, target, degrees):
-    """Copies of KITTI's scans for programs that have no correction of their own. Returns their folder."""
-    target.mkdir(parents=True, exist_ok=True)
-    for file in sorted(folder.glob("*.bin")):
-        if (target / file.name).exists():
-            continue
-        points = array.array("f")
-        points.frombytes(file.read_bytes()[:file.stat().st_size // BYTES_OF_POINT * BYTES_OF_POINT])
-        if sys.byteorder == "big":
-            points.byteswap()
-        part = target / (file.name + ".part")
-        part.write_bytes(raised(points, degrees).tobytes())
-        part.rename(target / file.name)
-    return target
 
 
 def as_camera(lidar):
@@ -80,6 +54,32 @@ def camera_way(poses, target):
     rows = [[float(word) for word in line.split()] for line in open(poses) if line.strip()]
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text("".join(" ".join(f"{value:.9g}" for value in as_camera(row)) + "\n" for row in rows))
+    return target
+
+
+def wander(generator, deviation):
+    """A function of time: a sum of sines of 2 to 40 s, as errors of GPS that an inertial sensor bridges."""
+    waves = [(2.0 * math.pi / (2.0 * 20.0 ** (i / 4.0)), generator.uniform(0.0, 2.0 * math.pi)) for i in range(5)]
+    return lambda t: deviation * math.sqrt(2.0 / len(waves)) * sum(math.sin(rate * t + phase) for rate, phase in waves)
+
+
+def as_by_gps(truth, target, seed, up):
+    """Exact poses, ten a second, with the errors that the truth of real drives has: a file.
+
+    up: the axis of the body that points up or down, 0 to 2: 2 for a lidar, 1 for a camera."""
+    generator = random.Random(seed)
+    place, heading = [wander(generator, GPS_POSITION) for _ in range(3)], wander(generator, math.radians(GPS_HEADING))
+    first, second = (up + 1) % 3, (up + 2) % 3
+    rows = []
+    for n, line in enumerate(line for line in truth.read_text().splitlines() if line.strip()):
+        pose, t = [float(word) for word in line.split()], 0.1 * n
+        sine, cosine = math.sin(heading(t)), math.cos(heading(t))
+        for row in range(3):
+            a, b = pose[4 * row + first], pose[4 * row + second]
+            pose[4 * row + first], pose[4 * row + second] = cosine * a + sine * b, cosine * b - sine * a
+            pose[4 * row + 3] += place[row](t)
+        rows.append(" ".join(f"{value:.9g}" for value in pose) + "\n")
+    target.write_text("".join(rows))
     return target
 
 

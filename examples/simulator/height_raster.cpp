@@ -5,7 +5,7 @@
 
 namespace pcl_floam::simulator {
 
-HeightRaster::HeightRaster(const std::vector<Eigen::Vector3d>& path, double reach)
+HeightRaster::HeightRaster(const std::vector<Eigen::Vector3d>& path, double reach, const CrossSection& section)
 {
   Eigen::Vector2d low = path.front().head<2>();
   Eigen::Vector2d high = low;
@@ -19,6 +19,33 @@ HeightRaster::HeightRaster(const std::vector<Eigen::Vector3d>& path, double reac
   columns_ = static_cast<std::size_t>(cells.x()) + 1;
   rows_ = static_cast<std::size_t>(cells.y()) + 1;
   fill(path, reach);
+  if (section) {
+    addSection(path, section);
+  }
+}
+
+void HeightRaster::addSection(const std::vector<Eigen::Vector3d>& path, const CrossSection& section)
+{
+  std::vector<double> along{0.0};
+  for (std::size_t n = 1; n < path.size(); ++n) {
+    along.push_back(along.back() + (path[n] - path[n - 1]).head<2>().norm());
+  }
+  for (std::size_t i = 0; i < columns_; ++i) {
+    for (std::size_t k = 0; k < rows_; ++k) {
+      if (!covered_[i * rows_ + k]) {
+        continue;
+      }
+      const Eigen::Vector2d node = corner(i, k);
+      const auto nearest = std::min_element(path.begin(), path.end(), [&node](const auto& a, const auto& b) {
+        return (a.template head<2>() - node).squaredNorm() < (b.template head<2>() - node).squaredNorm();
+      });
+      const auto n = static_cast<std::size_t>(nearest - path.begin());
+      const Eigen::Vector3d ahead = path[std::min(n + 1, path.size() - 1)] - path[n > 0 ? n - 1 : 0];
+      const Eigen::Vector2d off = node - nearest->head<2>();
+      const double left = std::copysign(off.norm(), ahead.x() * off.y() - ahead.y() * off.x());
+      heights_[i * rows_ + k] += section(along[n], left);
+    }
+  }
 }
 
 void HeightRaster::fill(const std::vector<Eigen::Vector3d>& path, double reach)

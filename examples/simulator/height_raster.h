@@ -5,16 +5,23 @@
 #include <Eigen/Core>
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace pcl_floam::simulator {
+
+/// Height of the ground above what is level across a path, m.
+/// \param along m along the path
+/// \param left  m to the left of it
+using CrossSection = std::function<double(double along, double left)>;
 
 /// Heights on a grid about a path: at the path its own, beside it those of the nearest parts of it, smoothly.
 class HeightRaster {
 public:
   /// \param path  m, places on the ground, a few metres apart
   /// \param reach m, to each side of the path that there is ground
-  HeightRaster(const std::vector<Eigen::Vector3d>& path, double reach);
+  /// \param section ditches and banks beside the path; none if empty
+  HeightRaster(const std::vector<Eigen::Vector3d>& path, double reach, const CrossSection& section = {});
 
   [[nodiscard]] double height(double x, double y) const;
 
@@ -35,6 +42,7 @@ public:
 
 private:
   void fill(const std::vector<Eigen::Vector3d>& path, double reach);
+  void addSection(const std::vector<Eigen::Vector3d>& path, const CrossSection& section);
 
   Eigen::Vector2d origin_ = Eigen::Vector2d::Zero();
   std::size_t columns_ = 0, rows_ = 0;

@@ -45,18 +45,18 @@ constexpr double kRoughness = 0.15;
 
 }  // namespace
 
-double Lidar::azimuth(int column, HeadRotation rotation) const
+double Lidar::azimuth(double column, HeadRotation rotation) const
 {
   const double angle = M_PI - 2.0 * M_PI * column / columns;
-  return rotation == HeadRotation::clockwise || column == 0 ? angle : -angle;
+  return rotation == HeadRotation::clockwise || column <= 0.0 ? angle : -angle;
 }
 
-BeamDirection Lidar::direction(int ring, int column, double time, HeadRotation rotation) const
+BeamDirection Lidar::direction(int ring, double column, double time, HeadRotation rotation) const
 {
   if (pattern == ScanPattern::turning) {
     return {azimuth(column, rotation), elevations[static_cast<std::size_t>(ring)]};
   }
-  return pattern == ScanPattern::flash ? pixelDirection(ring, rings(), column, columns)
+  return pattern == ScanPattern::flash ? pixelDirection(ring, rings(), static_cast<int>(column), columns)
                                        : beamDirection(pattern, ring, rings(), time);
 }
 

@@ -33,11 +33,11 @@ struct Lidar {
 
   /// Where a laser looks.
   /// \param time s since the sensor was switched on
-  [[nodiscard]] BeamDirection direction(int ring, int column, double time, HeadRotation rotation) const;
+  [[nodiscard]] BeamDirection direction(int ring, double column, double time, HeadRotation rotation) const;
 
   /// Azimuth of a firing in rad, counter-clockwise from the sensor's x axis, in (-pi, pi]. A turn begins and ends at
   /// the rear and looks forward at its middle.
-  [[nodiscard]] double azimuth(int column, HeadRotation rotation) const;
+  [[nodiscard]] double azimuth(double column, HeadRotation rotation) const;
 
   /// Whether the echo of a surface is strong enough to be seen: bright, near and head-on surfaces surely are, dark,
   /// far and grazing ones with falling probability.

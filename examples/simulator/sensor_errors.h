@@ -5,6 +5,7 @@
 #include "lidar.h"
 #include "random.h"
 #include "ray_scene.h"
+#include "smooth_noise.h"
 
 #include <Eigen/Core>
 
@@ -25,6 +26,9 @@ struct SensorErrors {
   double beam_divergence = 0.0;    ///< rad, width of the beam
   double range_step = 0.0;         ///< m between the ranges that can be told
   double time_jitter = 0.0;        ///< s, standard deviation of when a column is fired from when it is told to be
+  double firing_phase = 0.0;       ///< part of a column by which turns begin at other angles than the one before
+  double head_wander = 0.0;        ///< rad, standard deviation of the head's angle from what is told of it
+  double sway = 0.0;               ///< rad, standard deviation of roll and pitch of what carries the sensor, slowly
   double glass = 0.0;  ///< part of the gloss of glass and paint that has effect: lost returns, mirror images
 };
 
@@ -65,6 +69,12 @@ public:
 
   [[nodiscard]] const SensorErrors& errors() const { return errors_; }
 
+  /// rad by which the head has turned farther than it is told to have.
+  [[nodiscard]] double headError(double time) const { return head_(time); }
+
+  /// How what carries the sensor is tilted.
+  [[nodiscard]] Eigen::Matrix3d tilt(double time) const;
+
   /// Where a laser really points that is thought to point at \p azimuth and \p elevation, rad.
   [[nodiscard]] Eigen::Vector3d beam(int laser, double azimuth, double elevation) const;
 
@@ -79,6 +89,7 @@ private:
 
   SensorErrors errors_;
   std::vector<Laser> lasers_;
+  SmoothNoise head_, roll_, pitch_;
 };
 
 }  // namespace pcl_floam::simulator

@@ -88,6 +88,11 @@ void describeSensor(CLI::App& app, Arguments& arguments)
       ->check(CLI::IsMember(sim::lidarNames()));
   app.add_option("--rate", options.rate, "Sweeps per second")->capture_default_str();
   addChoice(app, "--rotation", options.rotation, rotations, "Head seen from above: cw or ccw; default: cw");
+  app.add_option("--reach", options.reach, "Metres, nothing farther away is told of (KITTI's scans: 80); 0: all")
+      ->capture_default_str();
+  app.add_option("--carrier", options.carrier,
+                 "Metres behind the sensor to the front of what carries it, 2.5 m wide, which is seen as well; 0: none")
+      ->capture_default_str();
   app.add_option("--field-of-view", options.field_of_view, "Degrees about the forward direction that are seen")
       ->capture_default_str();
   app.add_option("--mount", arguments.mount,

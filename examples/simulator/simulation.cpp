@@ -35,6 +35,8 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.beam_divergence >= 0.0 && options.beam_divergence < 0.1, "the beam must be from 0 to 0.1 rad wide");
   check(options.path >= 1 && options.path < 1000, "the path must be from 1 to 999");
   check(!options.standing || std::isfinite(*options.standing), "the place to stand at must be finite");
+  check(options.reach >= 0.0, "the reach must not be negative");
+  check(options.carrier >= 0.0 && options.carrier <= 10.0, "the carrier must be from 0 to 10 m behind the sensor");
   check(options.start >= 0.0, "the start must not be negative");
   const Weather& weather = options.weather;
   check(weather.rain >= 0.0 && weather.rain <= 200.0, "the rain must be from 0 to 200 mm/h");
@@ -70,6 +72,28 @@ void resize(Sweep& sweep, std::size_t size)
   sweep.ghost.resize(size);
 }
 
+/// The echo of the front of what carries the sensor, \p behind m behind it, if the beam meets it.
+std::optional<Echo> carrierEcho(double behind, const Eigen::Vector3d& beam)
+{
+  constexpr double kHalfWidth = 1.25;  // m
+  constexpr double kTop = 1.0;         // m above the sensor
+  constexpr double kBottom = -1.5;     // m
+  if (behind <= 0.0 || beam.x() >= 0.0) {
+    return std::nullopt;
+  }
+  const double distance = -behind / beam.x();
+  const Eigen::Vector3d place = distance * beam;
+  if (std::abs(place.y()) > kHalfWidth || place.z() > kTop || place.z() < kBottom) {
+    return std::nullopt;
+  }
+  RayHit hit;
+  hit.distance = static_cast<float>(distance);
+  hit.incidence_cosine = static_cast<float>(-beam.x());
+  hit.reflectivity = 0.4F;
+  hit.moving = true;
+  return Echo{hit, false};
+}
+
 /// Intensity as Velodyne gives it: 0 to 255.
 float intensityOf(const RayHit& hit, Random& random)
 {
@@ -101,6 +125,7 @@ struct Simulation::WorldModel {
 /// One column: all lasers at once.
 struct Simulation::Firing {
   int column;
+  double phase;     // columns by which the turn begins later
   double fraction;  // of the sweep, in [0, 1)
   double time;      // s after the sweep's start
   SE3 world_T_sensor;
@@ -141,7 +166,7 @@ double Simulation::accelerationBound() const
 
 SE3 Simulation::sensorPose(double t) const
 {
-  const SE3 body_T_sensor{options_.mount.rotation(), Eigen::Vector3d::Zero()};
+  const SE3 body_T_sensor{unit_.tilt(options_.start + t) * options_.mount.rotation(), Eigen::Vector3d::Zero()};
   if (options_.standing) {
     const SE3 world_T_path = motion().pose(options_.start);
     return world_T_path * SE3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, *options_.standing, 0.0)} *
@@ -177,13 +202,18 @@ void Simulation::fire(const Firing& firing, Random& random, Sweep& sweep) const
   const double time = sweep.start_time + firing.time;
   const EchoModel model(lidar_, unit_.errors(), options_.weather);
   for (int ring = 0; ring < lidar_.rings(); ++ring) {
-    const auto [azimuth, elevation] = lidar_.direction(ring, firing.column, options_.start + time, options_.rotation);
+    const auto [azimuth, elevation] =
+        lidar_.direction(ring, firing.column + firing.phase, options_.start + time, options_.rotation);
     const bool blind = isBlind(azimuth, time);
     const Eigen::Vector3d told = directionOf(azimuth, elevation);
-    const Eigen::Vector3d beam = unit_.beam(ring, azimuth, elevation);
+    const Eigen::Vector3d beam = unit_.beam(ring, azimuth + unit_.headError(options_.start + time), elevation);
     const Pulse pulse{firing.world_T_sensor, beam, firing.fraction};
-    const std::optional<Echo> echo = blind ? std::nullopt : model.echo(world_->scene, pulse, random);
-    const bool seen = echo && !random.chance(options_.dropout);
+    std::optional<Echo> echo = blind ? std::nullopt : carrierEcho(options_.carrier, beam);
+    if (!echo && !blind) {
+      echo = model.echo(world_->scene, pulse, random);
+    }
+    const bool near = echo && (options_.reach == 0.0 || static_cast<double>(echo->hit.distance) <= options_.reach);
+    const bool seen = near && !random.chance(options_.dropout);
     if (!seen && !options_.organized) {
       continue;
     }
@@ -222,14 +252,17 @@ Sweep Simulation::sweep(std::size_t number)
     resize(sweep, all);
   }
   Random random = randomOf(options_.family, options_.seed, sweepPurpose(options_, number));
+  const bool turns = lidar_.pattern == ScanPattern::turning;
+  const double phase =
+      turns && unit_.errors().firing_phase > 0.0 ? unit_.errors().firing_phase * random.uniform() : 0.0;
   const SE3 end_T_world = sweep.world_T_end.inverse();
   for (int column = 0; column < lidar_.columns; ++column) {
     // A flash is one instant, the middle of the sweep.
-    const double fraction = lidar_.pattern == ScanPattern::flash ? 0.5 : static_cast<double>(column) / lidar_.columns;
+    const double fraction = lidar_.pattern == ScanPattern::flash ? 0.5 : (column + phase) / lidar_.columns;
     // Where the sensor was when it really fired; what is told is the time when it should have.
     const double jitter = unit_.errors().time_jitter > 0.0 ? unit_.errors().time_jitter * random.normal() : 0.0;
     const SE3 pose = sensorPose(sweep.start_time + fraction * duration + jitter);
-    fire({column, fraction, fraction * duration, pose, end_T_world * pose}, random, sweep);
+    fire({column, phase, fraction, fraction * duration, pose, end_T_world * pose}, random, sweep);
   }
   sweep.cloud.height = options_.organized ? static_cast<std::uint32_t>(lidar_.rings()) : 1;
   sweep.cloud.width = static_cast<std::uint32_t>(sweep.cloud.points.size()) / sweep.cloud.height;

@@ -41,6 +41,8 @@ struct SimulationOptions {
   /// Instead of moving, the sensor stands so many m to the left of where the path is at the start.
   std::optional<double> standing;
   HeadRotation rotation = HeadRotation::clockwise;
+  double reach = 0.0;    ///< m, nothing farther away is told of; 0: all that is seen
+  double carrier = 0.0;  ///< m behind the sensor, the upright front of what carries it; 0: nothing of that is seen
   /// Two numbers, s after the start of sweep 0: nothing returns from the one to the other. Equal: no gap.
   double gap_from = 0.0, gap_to = 0.0;
   double field_of_view = 360.0;  ///< degrees about the forward direction; what lies outside is never seen

@@ -14,6 +14,9 @@ namespace pcl_floam::simulator {
 /// A random function of time: a sum of sines.
 class SmoothNoise {
 public:
+  /// None at all.
+  SmoothNoise() = default;
+
   /// \param amplitude    standard deviation, in whatever unit
   /// \param low, high    Hz, band of its frequencies
   /// \param waves        number of sines

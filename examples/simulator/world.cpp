@@ -15,7 +15,7 @@ struct Entry {
 constexpr Entry kWorlds[] = {{"warehouse", makeWarehouse}, {"room", makeRoom},          {"urban", makeUrban},
                              {"highway", makeHighway},     {"corridor", makeCorridor},  {"tunnel", makeTunnel},
                              {"handheld", makeHandheld},   {"open-road", makeOpenRoad}, {"town", makeTown},
-                             {"motorway", makeMotorway},   {"car-park", makeCarPark}};
+                             {"motorway", makeMotorway},   {"car-park", makeCarPark},   {"yard", makeYard}};
 
 }  // namespace
 

@@ -69,11 +69,17 @@ struct WorldOptions {
 /// than 900 m at about 25 m/s.
 [[nodiscard]] World makeOpenRoad(const WorldOptions& options);
 
-/// A town along a trajectory: facades, trees, poles, parked and moving cars beside real motion.
+/// A town along a trajectory: facades behind front gardens, hedges, fences, trees, poles, parked and moving cars beside
+/// real motion.
 [[nodiscard]] World makeTown(const WorldOptions& options);
 
-/// A motorway along a trajectory: rails, bushes and trees, signs, traffic beside real motion.
+/// A motorway along a trajectory: barriers, ditches, banks, grass, dense bushes and trees, signs, traffic beside real
+/// motion.
 [[nodiscard]] World makeMotorway(const WorldOptions& options);
+
+/// A yard or an open place: a few buildings far apart at its edge, parked vehicles, trees, poles, people; a round of
+/// more than 100 m at up to 3 m/s.
+[[nodiscard]] World makeYard(const WorldOptions& options);
 
 /// A straight corridor, 130 m to go, with doors every 5 to 11 m as its only structure; no end in sight.
 [[nodiscard]] World makeCorridor(const WorldOptions& options);

@@ -75,16 +75,48 @@ ScanSaver::ScanSaver(std::filesystem::path folder) : folder_(std::move(folder))
 void ScanSaver::save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
                      const OdometryParameters& parameters)
 {
-  if (!folder_.empty()) {
-    undistort(cloud, report, parameters);
-    writePcd(cloud, folder_ / numberedName(scan));
-    times_.push_back(time);
+  if (folder_.empty()) {
+    return;
+  }
+  times_.push_back(time);
+  correct(scan, report);
+  waiting_.push_back({scan, cloud, report, parameters});
+  if (!report.provisional) {
+    writeWaiting();
   }
 }
 
-void ScanSaver::finish() const
+/// What is known by now of the scans that wait: poses, how the sensor moved between them, and their points' times.
+void ScanSaver::correct(std::size_t scan, const OdometryReport& report)
+{
+  const std::vector<SE3>& poses = report.corrected_poses;
+  const auto poseOf = [&](std::size_t number) {
+    return number < scan ? poses[poses.size() - (scan - number)] : report.world_T_sensor;
+  };
+  for (Waiting& one : waiting_) {
+    one.report.timing_source = report.timing_source;
+    one.report.rotation = report.rotation;
+    if (scan - one.scan <= poses.size()) {
+      one.report.world_T_sensor = poseOf(one.scan);
+      one.report.registration.sweep_twist = log(poseOf(one.scan).inverse() * poseOf(one.scan + 1));
+      one.report.registration.sweep_acceleration = Vector6::Zero();
+    }
+  }
+}
+
+void ScanSaver::writeWaiting()
+{
+  for (Waiting& one : waiting_) {
+    undistort(one.cloud, one.report, one.parameters);
+    writePcd(one.cloud, folder_ / numberedName(one.scan));
+  }
+  waiting_.clear();
+}
+
+void ScanSaver::finish()
 {
   if (!folder_.empty()) {
+    writeWaiting();
     writeTimes(times_, folder_ / "times.txt");
   }
 }

@@ -21,7 +21,9 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
 /// \throws FileError if it cannot be created or is not empty.
 void prepareScanFolder(const std::filesystem::path& folder);
 
-/// Writes undistorted scans as FOLDER/000000.pcd and so on, by the scan's number, and the times of their poses.
+/// Writes undistorted scans as FOLDER/000000.pcd and so on, by the scan's number, and the times of their poses. While
+/// poses are provisional the scans wait: which way the head turned, and how the sensor moved, may yet turn out to be
+/// other than was supposed.
 class ScanSaver {
 public:
   /// \param folder as \ref prepareScanFolder wants it; empty: nothing is written
@@ -32,12 +34,23 @@ public:
   void save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, const OdometryReport& report,
             const OdometryParameters& parameters);
 
-  /// After the last scan. \throws FileError if times.txt cannot be written.
-  void finish() const;
+  /// After the last scan. \throws FileError if a scan that waits or times.txt cannot be written.
+  void finish();
 
 private:
+  struct Waiting {
+    std::size_t scan;
+    pcl::PCLPointCloud2 cloud;
+    OdometryReport report;
+    OdometryParameters parameters;
+  };
+
+  void correct(std::size_t scan, const OdometryReport& report);
+  void writeWaiting();
+
   std::filesystem::path folder_;
   std::vector<double> times_;
+  std::vector<Waiting> waiting_;
 };
 
 /// 000012.pcd

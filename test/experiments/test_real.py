@@ -1,6 +1,5 @@
-"""What 10_real.sh adds to the judgement: rest, the correction of KITTI's lasers, ways as a camera's."""
+"""What 10_real.sh adds to the judgement: rest, ways as a camera's, truth as by GPS."""
 
-import array
 import math
 import pathlib
 import sys
@@ -37,31 +36,6 @@ class Evaluated(unittest.TestCase):
         self.assertEqual(real.at_rest(self, self.folder), {"wander": None, "jitter": None})
 
 
-class Raised(unittest.TestCase):
-    def test_each_point_goes_up_by_the_angle_and_keeps_azimuth_range_and_intensity(self):
-        points = array.array("f", [3.0, 4.0, -1.0, 0.5, -10.0, 2.0, 0.0, 0.25, 0.0, 0.0, 0.0, 0.1])
-        result = real.raised(points, 2.0)
-        for i in (0, 4):
-            before, after = points[i:i + 4], result[i:i + 4]
-            elevation = lambda p: math.degrees(math.atan2(p[2], math.hypot(p[0], p[1])))
-            self.assertAlmostEqual(elevation(after) - elevation(before), 2.0, places=4)
-            self.assertAlmostEqual(math.atan2(after[1], after[0]), math.atan2(before[1], before[0]), places=6)
-            self.assertAlmostEqual(math.hypot(*after[:3]), math.hypot(*before[:3]), places=4)
-            self.assertEqual(after[3], before[3])
-        self.assertEqual(list(result[8:11]), [0.0, 0.0, 0.0])
-
-    def test_scans_are_copied_whole_and_once(self):
-        with tempfile.TemporaryDirectory() as place:
-            folder, target = pathlib.Path(place) / "a", pathlib.Path(place) / "b"
-            folder.mkdir()
-            (folder / "0.bin").write_bytes(array.array("f", [1.0, 0.0, 0.0, 0.5] * 3).tobytes() + b"xy")
-            real.raised_scans(folder, target, 1.0)
-            self.assertEqual((target / "0.bin").stat().st_size, 48)
-            (target / "0.bin").write_bytes(b"kept")
-            real.raised_scans(folder, target, 1.0)
-            self.assertEqual((target / "0.bin").read_bytes(), b"kept")
-
-
 class FirstScans(unittest.TestCase):
     def test_scans_and_true_poses_are_cut_alike(self):
         with tempfile.TemporaryDirectory() as place:
@@ -89,6 +63,36 @@ class AsCamera(unittest.TestCase):
         expected = [c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0]
         for value, wanted in zip(row, expected):
             self.assertAlmostEqual(value, wanted)
+
+
+class AsByGps(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.truth = self.folder / "truth.txt"
+        self.truth.write_text("".join(f"1 0 0 {n} 0 1 0 0 0 0 1 0\n" for n in range(2000)))
+
+    def made(self, seed, up):
+        file = real.as_by_gps(self.truth, self.folder / "made.txt", seed, up)
+        return [[float(word) for word in line.split()] for line in file.read_text().splitlines()]
+
+    def test_errors_are_of_the_size_stated_and_slow(self):
+        rows = self.made(1, 2)
+        sides = [row[7] for row in rows]
+        self.assertAlmostEqual(math.sqrt(sum(y * y for y in sides) / len(sides)), real.GPS_POSITION, delta=0.005)
+        self.assertLess(max(abs(b - a) for a, b in zip(sides, sides[1:])), real.GPS_POSITION)
+        turns = [math.degrees(math.atan2(row[4], row[0])) for row in rows]
+        self.assertAlmostEqual(math.sqrt(sum(a * a for a in turns) / len(turns)), real.GPS_HEADING, delta=0.02)
+
+    def test_rotations_stay_such_about_the_axis_given(self):
+        for row in self.made(2, 1):
+            self.assertEqual(row[4:7], [0, 1, 0])
+            self.assertAlmostEqual(row[0] * row[10] - row[2] * row[8], 1.0, places=6)
+
+    def test_seeds_tell_them_apart(self):
+        self.assertNotEqual(self.made(1, 2), self.made(2, 2))
+        self.assertEqual(self.made(1, 2), self.made(1, 2))
 
 
 class Ratio(unittest.TestCase):

@@ -1,11 +1,13 @@
 // Worlds along a trajectory that is given.
 
 #include "height_raster.h"
+#include "simulation.h"
 #include "trajectory_file.h"
 #include "world.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -89,6 +91,39 @@ TEST(HeightRaster, FollowsThePath)
   for (const double x : {30.0, 61.0, 120.5}) {
     EXPECT_NEAR(raster.height(x, 0.0), 0.05 * x, 0.05) << x;
     EXPECT_NEAR(raster.height(x, 30.0), 0.05 * x, 0.6) << x;
+  }
+}
+
+TEST(HeightRaster, HasACrossSection)
+{
+  std::vector<Eigen::Vector3d> path;
+  for (int i = 0; i < 60; ++i) {
+    path.emplace_back(3.0 * i, 0.0, 0.0);
+  }
+  const auto section = [](double along, double left) { return left > 5.0 ? 0.01 * along : (left < -5.0 ? -1.0 : 0.0); };
+  const HeightRaster raster(path, 40.0, section);
+  EXPECT_NEAR(raster.height(90.0, 0.0), 0.0, 1e-6);
+  EXPECT_NEAR(raster.height(90.0, 20.0), 0.9, 0.05) << "to the left of a path along x";
+  EXPECT_NEAR(raster.height(90.0, -20.0), -1.0, 1e-6);
+}
+
+/// Returns of one sweep that stand over the road's level, as a part of all.
+double shareAbove(const SimulationOptions& options, double height)
+{
+  const Sweep sweep = Simulation(options).sweep(0);
+  const auto above = std::count_if(sweep.cloud.begin(), sweep.cloud.end(),
+                                   [height](const PointXYZIRT& point) { return point.z > height; });
+  return static_cast<double>(above) / static_cast<double>(sweep.cloud.size());
+}
+
+TEST_F(GivenTrajectory, HasGrowthBesideMotorwaysAndStreets)
+{
+  for (const char* name : {"town", "motorway"}) {
+    SimulationOptions simulated;
+    simulated.world = name;
+    simulated.family = Family::test;
+    simulated.trajectory = {file_.string(), 0.0, 150.0};
+    EXPECT_GT(shareAbove(simulated, -1.0), 0.05) << name;
   }
 }
 

@@ -159,6 +159,53 @@ TEST(SensorErrors, TimesThatAreOffShowInMotionOnly)
   EXPECT_LT(worst(options), 1e-4);
 }
 
+TEST(SensorErrors, ByTheirOwnClockLasersFireAtOtherAnglesInEachTurn)
+{
+  const auto firstAzimuth = [](Simulation& simulation, std::size_t number) {
+    const PointXYZIRT point = simulation.sweep(number).cloud.front();
+    return std::atan2(point.y, point.x);
+  };
+  SimulationOptions options = roomWith({});
+  options.standing = 0.0;
+  Simulation locked(options);
+  EXPECT_EQ(firstAzimuth(locked, 1), firstAzimuth(locked, 2));
+  options.errors["firing-phase"] = 1.0;
+  Simulation free(options);
+  const float step = static_cast<float>(2.0 * M_PI / free.sensor().columns);
+  EXPECT_NE(firstAzimuth(free, 1), firstAzimuth(free, 2));
+  EXPECT_NEAR(firstAzimuth(free, 1), firstAzimuth(free, 2), step);
+  for (const Difference& one : differencesOf(options)) {
+    ASSERT_NEAR(one.azimuth, 0.0, 1e-5) << "the angle is told as it is";
+  }
+}
+
+TEST(SensorErrors, AHeadThatWandersTurnsAllPointsAlike)
+{
+  SimulationOptions options = roomWith({{"head-wander", 0.2}});
+  options.standing = 0.0;
+  double worst = 0.0;
+  for (std::size_t number = 0; number < 5; ++number) {
+    Simulation simulation(options);
+    const std::vector<Difference> found = differences(simulation, simulation.sweep(number));
+    worst = std::max(worst, std::abs(found.front().azimuth));
+    EXPECT_NEAR(found.front().azimuth, found[16].azimuth, 1e-4);
+  }
+  EXPECT_GT(worst, 0.05 * kDegree);
+  EXPECT_LT(worst, 0.7 * kDegree);
+}
+
+TEST(SensorErrors, WhatSwaysTiltsTheSensorAndItsTruth)
+{
+  SimulationOptions options = roomWith({{"sway", 0.5}});
+  options.standing = 0.0;
+  const Simulation simulation(options);
+  const SE3 moved = simulation.worldTSensor(0.0).inverse() * simulation.worldTSensor(20.0);
+  EXPECT_LT(moved.translation.norm(), 1e-9);
+  const double angle = Eigen::AngleAxisd(moved.rotation).angle();
+  EXPECT_GT(angle, 0.05 * kDegree);
+  EXPECT_LT(angle, 3.0 * kDegree);
+}
+
 TEST(SensorErrors, OnSlantingGroundAWideBeamErrsLittle)
 {
   SimulationOptions options = roomWith({{"beam-divergence", 3.0}});

@@ -51,7 +51,7 @@ class EveryWorld : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(Simulation, EveryWorld,
                          testing::Values("warehouse", "room", "urban", "highway", "corridor", "tunnel", "handheld",
-                                         "open-road", "town", "motorway", "car-park"),
+                                         "open-road", "town", "motorway", "car-park", "yard"),
                          [](const auto& parameter) {
                            std::string name = parameter.param;
                            std::replace(name.begin(), name.end(), '-', '_');

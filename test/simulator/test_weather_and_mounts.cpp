@@ -51,6 +51,32 @@ double farthestFromWalls(const Simulation& simulation, const Sweep& sweep)
 
 }  // namespace
 
+TEST(Mounts, TheCarrierIsSeenAtItsPlace)
+{
+  SimulationOptions options = tunnel();
+  options.carrier = 0.8;
+  const Sweep sweep = Simulation(options).sweep(0);
+  std::size_t seen = 0;
+  for (const PointXYZIRT& point : sweep.cloud) {
+    seen += std::abs(point.x + 0.8F) < 1e-3F ? 1 : 0;
+    ASSERT_FALSE(point.x < -0.81F && std::abs(point.y) < std::abs(point.x)) << "hidden by it";
+  }
+  EXPECT_GT(seen, 1000U);
+}
+
+TEST(Mounts, NothingBeyondTheReachIsToldOf)
+{
+  SimulationOptions options = tunnel();
+  options.reach = 5.0;
+  const Sweep sweep = Simulation(options).sweep(0);
+  EXPECT_GT(sweep.cloud.size(), 1000U);
+  for (const PointXYZIRT& point : sweep.cloud) {
+    ASSERT_LE(point.getVector3fMap().norm(), 5.001F);
+  }
+  options.reach = -1.0;
+  EXPECT_THROW(Simulation{options}, std::invalid_argument);
+}
+
 TEST(Weather, HeavyRainDimsAsTheRadioUnionSays)
 {
   // 1.076 * 25^0.67 = 9.3 dB/km: over 100 m there and back 1.86 dB.

@@ -72,7 +72,7 @@ std::vector<Eigen::Vector3d> prolonged(std::vector<Eigen::Vector3d> ground, doub
 
 }  // namespace
 
-Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random)
+Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random, const CrossSection& section)
 {
   constexpr double kBeyond = 60.0;  // m of road before and behind the way
   std::vector<BodyState> states = options.trajectory.file.empty()
@@ -83,7 +83,7 @@ Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random)
   for (const Eigen::Vector3d& place : ground) {
     places.emplace_back(place.head<2>());
   }
-  const auto raster = std::make_shared<const HeightRaster>(ground, drawn.reach);
+  const auto raster = std::make_shared<const HeightRaster>(ground, drawn.reach, section);
   Terrain terrain;
   terrain.layOn(raster);
   if (options.path > 1) {

@@ -31,7 +31,9 @@ struct DrawnWay {
 constexpr double kLidarHeight = 1.73;
 
 /// The way that the options tell of. Other paths than the first keep to another part of the lane.
-[[nodiscard]] Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random);
+/// \param section ditches and banks beside it; none if empty
+[[nodiscard]] Way makeWay(const WorldOptions& options, const DrawnWay& drawn, Random& random,
+                          const CrossSection& section = {});
 
 /// Whether a place keeps clear of all of the way.
 [[nodiscard]] bool isClear(const Way& way, const Eigen::Vector2d& place, double distance);
