@@ -19,6 +19,9 @@ constexpr std::size_t kCoarsestPoints = 1500;
 /// Of a moved point whose coordinates are in single precision, as a share of the largest.
 constexpr double kFloatRounding = 2.0 * static_cast<double>(std::numeric_limits<float>::epsilon());
 
+/// Voxels of a thinned cloud, in extents.
+constexpr double kRoughVoxel = 0.03;
+
 /// Coordinates are bounded so that their squares stay finite in single precision.
 constexpr float kLargest = 1e18F;
 
@@ -177,12 +180,24 @@ CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
 }
 
 CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
-    : threads_(threads)
+    : CloudPyramid(threads)
 {
   const Points points = takePoints(cloud, selectable);
   CloudLevel all = bareLevel(points.position, points.number);
   all.rounding = kFloatRounding * points.largest;
   full_ = withShapes(withoutScanLines(std::move(all)), threads);
+}
+
+std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                                    int threads)
+{
+  std::unique_ptr<CloudPyramid> pyramid(new CloudPyramid(threads));
+  const Points points = pyramid->takePoints(cloud, selectable);
+  CloudLevel all = bareLevel(points.position, points.number);
+  all.rounding = kFloatRounding * points.largest;
+  pyramid->full_ =
+      thinnedLevel(all, std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min()), threads);
+  return pyramid;
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const

@@ -36,6 +36,10 @@ public:
   /// \param selectable one flag per point of the cloud; empty: all
   CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
 
+  /// A pyramid whose level 0 is thinned already, for clouds of which only a rough picture is needed.
+  [[nodiscard]] static std::unique_ptr<CloudPyramid> thinned(const CloudView& cloud,
+                                                             const std::vector<std::uint8_t>& selectable, int threads);
+
   [[nodiscard]] bool empty() const { return full_.tree.empty(); }
 
   /// The centroid, in the cloud's frame.
@@ -58,6 +62,7 @@ private:
     double largest = 0.0;                   ///< m; of the coordinates in the cloud's frame
   };
 
+  explicit CloudPyramid(int threads) : threads_(threads) {}
   Points takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
 
   CloudLevel full_;

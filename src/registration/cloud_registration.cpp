@@ -1,6 +1,7 @@
 #include <pcl_floam/registration/cloud_registration.h>
 
 #include "registration/cloud_alignment.h"
+#include "registration/start_choice.h"
 #include "registration/start_search.h"
 #include "registration/weak_directions.h"
 
@@ -16,6 +17,10 @@ namespace {
 /// Converged when a step moves no typical point by more than this, in spacings.
 constexpr double kEpsilon = 5e-4;
 constexpr double kAtRest = 1e-5;
+
+/// On clouds that are thin already.
+constexpr double kRoughEpsilon = 2e-2;
+constexpr int kRoughIterations = 100;
 
 /// Directions that hold less well than this many times a slide along a plane are reported as weak.
 constexpr double kWeak = 5.0;
@@ -46,7 +51,7 @@ public:
   RegistrationReport run()
   {
     const SE3 guess = alignment_.pose();
-    if (run_.max_iterations >= kFewestForCoarse) {
+    if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
       StartSearch(source_, target_, run_, alignment_).find();
     }
     LevelAlignment level(source_.full(), target_.full(), run_, true, along());
@@ -59,6 +64,17 @@ public:
       report_.termination = Termination::converged;
     }
     return finish(whole ? weak.shares() : std::vector<double>());
+  }
+
+  SE3 runRoughly()
+  {
+    const StartChoice choice(source_.full(), target_.full(), run_.max_distance, run_.threads);
+    const SE3 guess = alignment_.pose();
+    StartSearch(source_, target_, run_, alignment_).find();
+    const double width = std::max(source_.full().spacing, target_.full().spacing);
+    LevelAlignment level(source_.full(), target_.full(), run_, false, kAlongSurfaces, true, width);
+    alignment_.align(level, kRoughIterations, kRoughEpsilon * level.spacing(), false);
+    return alignment_.toFrames(choice.better(alignment_.pose(), guess));
   }
 
 private:
@@ -122,6 +138,13 @@ PreparedCloud::PreparedCloud(const CloudView& cloud, const std::vector<std::uint
 {
 }
 
+PreparedCloud PreparedCloud::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
+{
+  return PreparedCloud(CloudPyramid::thinned(cloud, selectable, threads));
+}
+
+PreparedCloud::PreparedCloud(std::unique_ptr<CloudPyramid> pyramid) : pyramid_(std::move(pyramid)) {}
+
 PreparedCloud::~PreparedCloud() = default;
 PreparedCloud::PreparedCloud(PreparedCloud&& other) noexcept = default;
 PreparedCloud& PreparedCloud::operator=(PreparedCloud&& other) noexcept = default;
@@ -152,6 +175,15 @@ RegistrationReport registerClouds(const PreparedCloud& source, const PreparedClo
     return Registration(source.pyramid(), target.pyramid(), run).run();
   }
   return report;
+}
+
+SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target, const CloudRegistrationRun& run)
+{
+  if (!run.guess.isFinite() || target.empty() || source.empty()) {
+    return run.guess;
+  }
+  const SE3 result = Registration(source.pyramid(), target.pyramid(), run).runRoughly();
+  return result.isFinite() ? result : run.guess;
 }
 
 }  // namespace pcl_floam

@@ -47,10 +47,10 @@ void StartSearch::find()
   const SE3 guess = alignment_.pose();
   drawSurfaces(guess);
   const StartChoice choice(source_.full(), target_.full(), run_.max_distance, run_.threads);
-  const SE3 by_surfaces = alignment_.pose();
-  if (choice.isClose(by_surfaces)) {
+  if (choice.isClose(guess)) {
     return;
   }
+  const SE3 by_surfaces = alignment_.pose();
   alignment_.setPose(guess);
   drawPoints();
   alignment_.setPose(choice.better(alignment_.pose(), guess));

@@ -8,9 +8,9 @@
 
 namespace pcl_floam {
 
-/// Finds a start from the guess with thinned clouds, in two ways. Surfaces drawn to surfaces have to be near. If that
-/// does not end close, points are drawn to points: these come from far, but are drawn to where both clouds are dense,
-/// and to the sensor's pattern on the ground. Then the better of both is taken.
+/// Finds a start from the guess with thinned clouds, in two ways. Points drawn to points come from far, but are drawn
+/// to where both clouds are dense, and to the sensor's pattern on the ground. Surfaces drawn to surfaces are not, but
+/// have to be near. The better of both is taken.
 class StartSearch {
 public:
   /// \param alignment at the guess

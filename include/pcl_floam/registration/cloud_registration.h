@@ -1,5 +1,6 @@
 /// \file cloud_registration.h
-/// Registration of clouds of any origin, for every point type: the core of \ref EdgePlaneRegistration for two clouds.
+/// Registration of clouds of any origin, for every point type: the core of \ref EdgePlaneRegistration for clouds
+/// without scan lines.
 #pragma once
 
 #include <pcl_floam/common/cloud_view.h>
@@ -19,15 +20,16 @@ namespace pcl_floam {
 class CloudPyramid;
 
 /// A cloud made ready for registration: points about their centroid, a search tree, the shape around each point, and
-/// thinned versions of all that, made when they are first needed. Where a scanner's points lie so much closer along its
-/// scan lines than across them that neighbourhoods show these and no surfaces, the means of its points within voxels
-/// stand for them from the beginning. It does not depend on what it was registered with, and may be registered in
-/// several threads at a time.
+/// thinned versions of all that, made when they are first needed. It does not depend on what it was registered with,
+/// and may be registered in several threads at a time.
 class PreparedCloud {
 public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
   ///                   exactly (0, 0, 0) if there are several: they stand for "no return".
   PreparedCloud(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
+  /// Only what \ref alignRoughly needs: a few thousand points.
+  [[nodiscard]] static PreparedCloud thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
+                                             int threads);
   ~PreparedCloud();
   PreparedCloud(PreparedCloud&& other) noexcept;
   PreparedCloud& operator=(PreparedCloud&& other) noexcept;
@@ -40,6 +42,8 @@ public:
   [[nodiscard]] const CloudPyramid& pyramid() const { return *pyramid_; }
 
 private:
+  explicit PreparedCloud(std::unique_ptr<CloudPyramid> pyramid);
+
   std::unique_ptr<CloudPyramid> pyramid_;
 };
 
@@ -61,9 +65,10 @@ struct CloudIteration {
 struct CloudRegistrationRun {
   SE3 guess;  ///< target_T_source
   int threads = 1;
-  /// On the full clouds, >= 1. Thinned clouds are registered first, unless so few iterations are asked for that it is
-  /// them that matter (below 4).
+  /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
+  /// iterations are asked for that it is them that matter (below 4).
   int max_iterations = 30;
+  bool coarse_first = true;                                       ///< false: the guess is known to be close
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
   double epsilon = 0.0;  ///< m; go on until points move less than this, if that is finer than the default; 0: default
   int min_correspondences = 3;
@@ -88,5 +93,10 @@ struct CloudRegistrationRun {
 /// Bit-identical for every number of threads.
 [[nodiscard]] RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,
                                                 const CloudRegistrationRun& run);
+
+/// Where a registration by other means should start: the guess if it is close, else what registering thinned clouds
+/// comes to, if that is nearer the target than the guess. Takes a few milliseconds.
+[[nodiscard]] SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target,
+                               const CloudRegistrationRun& run);
 
 }  // namespace pcl_floam

@@ -48,13 +48,14 @@ public:
 /// \endcode
 ///
 /// What is registered:
-/// - Two clouds, of a lidar or not: all their finite points, each pair weighed by the shapes around both points
-///   (\ref registerClouds), with no length that is not relative to the clouds' spacing. Thinned clouds come first,
-///   unless fewer than 4 iterations are asked for. A cloud whose points show its sensor's scan lines rather than its
-///   surfaces is thinned to the means of its points within voxels throughout.
-/// - A map set by setInputTargetMap(), or the target's features where setSourceFeatures() was called: with the features
-///   set or the source's own, the paper's way (\ref registerFeatures), from a guess that is close. All points of a
-///   cloud without scan lines stand for planes.
+/// - Features set by setSourceFeatures(), or those of the source if both clouds are lidar scans with scan lines,
+///   against the map set by setInputTargetMap() or the target's features: the paper's way (\ref registerFeatures).
+/// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
+///   with no length that is not relative to the clouds' spacing.
+///
+/// Should scans have too few features in common, all their points are tried, too.
+///
+/// Either starts with thinned clouds if the guess is not close, unless fewer than 4 iterations are asked for.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
 /// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
@@ -65,7 +66,7 @@ public:
 ///   the iterations on the full clouds as they end ICP. Unset, these end when no point moves by more than a small
 ///   fraction of the spacing. Those on features and on thinned clouds do not end sooner for a coarse threshold.
 /// - Rejectors run in each iteration, reciprocal matches are honoured, and the visualisation callback is called once an
-///   iteration on the full clouds. Matches of thinned clouds, which rejectors see, too, name the points nearest to the
+///   iteration on the full clouds. Rejectors see the thinned clouds' matches, too: these name the points nearest to the
 ///   voxels' means.
 /// - A search object set by `setSearchMethodTarget` is used as it is if it is told not to be recomputed, is of a class
 ///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
@@ -74,6 +75,9 @@ public:
 ///   with it.
 /// - A guess that is no rigid motion is carried along, as in ICP: the source is registered as the guess bends it.
 /// - `setRANSACIterations`, `setRANSACOutlierRejectionThreshold`: without effect, as in ICP itself.
+///
+/// Rejectors, reciprocal matches, the Euclidean fitness epsilon and a search object of the user's speak of points: with
+/// them scans are registered by all points, too.
 ///
 /// Input that constrains no pose is reported: hasConverged() is false, report() and an error message tell why, or the
 /// best partial answer comes with its weak directions. Indices that are out of the source's range count as such input.
@@ -97,13 +101,13 @@ public:
 
   EdgePlaneRegistration();
 
-  /// Between two clouds `kernel` and `locked` count; the others are about features. What
+  /// Where all points are registered, `kernel` and `locked` count; the others are about features. What
   /// `setMaximumIterations` has set stays as it is.
   /// \throws std::invalid_argument if a parameter is out of its range.
   void setParameters(const RegistrationParameters& parameters);
   [[nodiscard]] const RegistrationParameters& getParameters() const { return parameters_; }
 
-  /// Settings of the features that are extracted from clouds with scan lines where features are registered.
+  /// Settings of the features that are extracted from clouds with scan lines.
   /// \throws std::invalid_argument if a parameter is out of its range.
   void setFeatureParameters(const FeatureParameters& parameters);
   [[nodiscard]] const FeatureParameters& getFeatureParameters() const { return feature_parameters_; }
@@ -148,20 +152,29 @@ protected:
   void computeTransformation(PointCloudSource& output, const Matrix4& guess) override;
 
 private:
+  /// What the target cloud was turned into; kept until the target changes.
+  struct Target {
+    std::unique_ptr<KeyframeVoxelMap> features;  ///< of a cloud with scan lines
+    std::unique_ptr<PreparedCloud> points;       ///< of any cloud, made when it is first needed
+    std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
+  };
+
   void forgetResult();
   void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
-  [[nodiscard]] FeatureSet featuresOf(const CloudView& cloud, const std::vector<std::uint8_t>& selectable) const;
-  [[nodiscard]] const KeyframeVoxelMap& targetFeatures();
+  [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
   [[nodiscard]] const PreparedCloud& targetPoints();
+  [[nodiscard]] bool wantsPoints() const;
   [[nodiscard]] bool hasSearchOfItsOwn() const;
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
   [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
   [[nodiscard]] int iterationLimit() const { return std::max(1, this->max_iterations_); }
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
-  [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess);
-  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess);
+  [[nodiscard]] SE3 roughPose(const SE3& guess);
+  [[nodiscard]] RegistrationReport registerByFeatures(const SE3& guess, FeatureSet& source);
+  [[nodiscard]] RegistrationReport registerByPoints(const SE3& guess, int max_iterations, bool coarse_first);
+  [[nodiscard]] RegistrationReport finishByPoints(const RegistrationReport& by_features);
   void takeSource(const Matrix4& stretch);
   void runBaseLoop(PointCloudSource& output, const Matrix4& guess);
   void setUpCriteria();
@@ -182,9 +195,7 @@ private:
   KeyframeVoxelMap::ConstPtr target_map_;
   PointCloudTargetConstPtr map_cloud_;   ///< the target while it stands in for a map
   PointCloudSourceConstPtr registered_;  ///< the source as the guess bends it, while align() runs
-  // What the target cloud was turned into, when it was first needed; kept until the target changes.
-  std::shared_ptr<const KeyframeVoxelMap> target_features_;
-  std::shared_ptr<const PreparedCloud> target_points_;
+  std::shared_ptr<Target> prepared_target_;
   RegistrationReport report_;
   int threads_ = 1;
   pcl::IndicesPtr given_indices_;  ///< by the user, if some of them are out of range

@@ -27,36 +27,34 @@ std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar
   return maskOf(*this->indices_, this->input_->size());
 }
 
-/// Of a cloud without scan lines, all points stand for planes.
 template <typename PointSource, typename PointTarget, typename Scalar>
-FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featuresOf(
-    const CloudView& cloud, const std::vector<std::uint8_t>& selectable) const
-{
-  FeatureSet features = scanLineFeatures(cloud, sensor_, feature_parameters_, selectable);
-  return features.planes.empty() && features.edges.empty() ? pointFeatures(cloud, selectable) : features;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-const KeyframeVoxelMap& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
+const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
 {
   if (target_map_) {
-    return *target_map_;
+    return target_map_.get();
   }
-  if (!target_features_) {
-    auto map = std::make_shared<KeyframeVoxelMap>();
-    map->insert(featuresOf(viewOf(*this->target_), {}), SE3());
-    target_features_ = map;
+  if (!prepared_target_) {
+    prepared_target_ = std::make_shared<Target>();
+    const FeatureSet features = scanLineFeatures(viewOf(*this->target_), sensor_, feature_parameters_);
+    if (static_cast<int>(features.planes.size() + features.edges.size()) >= parameters_.min_correspondences) {
+      prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
+      prepared_target_->features->insert(features, SE3());
+    }
   }
-  return *target_features_;
+  return prepared_target_->features.get();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 const PreparedCloud& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetPoints()
 {
-  if (!target_points_) {
-    target_points_ = std::make_shared<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
+  if (!prepared_target_) {
+    prepared_target_ = std::make_shared<Target>();
   }
-  return *target_points_;
+  if (!prepared_target_->points) {
+    prepared_target_->points =
+        std::make_unique<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
+  }
+  return *prepared_target_->points;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -68,13 +66,34 @@ RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::
   return parameters;
 }
 
+/// Where to start on the features, which must be near theirs already.
 template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess)
+SE3 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::roughPose(const SE3& guess)
 {
-  const KeyframeVoxelMap& map = targetFeatures();
-  const FeatureSet source = source_features_ ? *source_features_ : featuresOf(viewOf(*registered_), selectableSource());
-  RegistrationRun run;
+  constexpr int kFewIterations = 4;
+  if (target_map_ || source_features_ || this->max_iterations_ < kFewIterations) {
+    return guess;
+  }
+  if (!prepared_target_->thinned) {
+    prepared_target_->thinned = std::make_unique<PreparedCloud>(
+        PreparedCloud::thinned(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_));
+  }
+  CloudRegistrationRun run;
   run.guess = guess;
+  run.threads = threads_;
+  run.max_distance = this->corr_dist_threshold_;
+  run.locked = parameters_.locked;
+  return alignRoughly(PreparedCloud::thinned(viewOf(*registered_), selectableSource(), threads_),
+                      *prepared_target_->thinned, run);
+}
+
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByFeatures(const SE3& guess,
+                                                                                               FeatureSet& source)
+{
+  const KeyframeVoxelMap& map = *targetFeatures();
+  RegistrationRun run;
+  run.guess = roughPose(guess);
   run.threads = threads_;
   run.factors = factors_;
   if (this->transformation_epsilon_ > 0.0) {
@@ -97,14 +116,17 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess)
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerByPoints(const SE3& guess,
+                                                                                             int max_iterations,
+                                                                                             bool coarse_first)
 {
   const PreparedCloud& target = targetPoints();
   const PreparedCloud source(viewOf(*registered_), selectableSource(), threads_);
   CloudRegistrationRun run;
   run.guess = guess;
   run.threads = threads_;
-  run.max_iterations = iterationLimit();
+  run.max_iterations = max_iterations;
+  run.coarse_first = coarse_first;
   run.max_distance = this->corr_dist_threshold_;
   run.epsilon = std::sqrt(std::max(0.0, this->transformation_epsilon_));
   run.min_correspondences = static_cast<int>(this->min_number_correspondences_);
@@ -123,6 +145,26 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   return registerClouds(source, target, run);
 }
 
+/// A few iterations with all points of two scans, after those with their features: thousands of features find the pose,
+/// all points tell it more exactly.
+template <typename PointSource, typename PointTarget, typename Scalar>
+RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::finishByPoints(
+    const RegistrationReport& by_features)
+{
+  constexpr int kAFew = 6;
+  const int left = std::min(kAFew, iterationLimit() - by_features.iterations);
+  if (left < 1) {
+    return by_features;
+  }
+  RegistrationReport report = registerByPoints(by_features.target_T_source, left, false);
+  if (!report.hasConverged()) {
+    return by_features;
+  }
+  report.iterations += by_features.iterations;
+  report.termination = by_features.termination;
+  return report;
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::registerSource(const SE3& guess)
 {
@@ -131,7 +173,24 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     report.termination = Termination::invalid_input;
     return report;
   }
-  return target_map_ || source_features_ ? registerByFeatures(guess) : registerByPoints(guess);
+  if (target_map_ || (!wantsPoints() && targetFeatures() != nullptr)) {
+    FeatureSet source = source_features_
+                            ? *source_features_
+                            : scanLineFeatures(viewOf(*registered_), sensor_, feature_parameters_, selectableSource());
+    if (target_map_ && source.planes.empty() && source.edges.empty()) {
+      source = pointFeatures(viewOf(*registered_), selectableSource());
+    }
+    if (!source.planes.empty() || !source.edges.empty()) {
+      const RegistrationReport report = registerByFeatures(guess, source);
+      if (target_map_ || source_features_) {
+        return report;
+      }
+      if (report.hasConverged()) {
+        return finishByPoints(report);
+      }
+    }
+  }
+  return registerByPoints(guess, iterationLimit(), true);
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

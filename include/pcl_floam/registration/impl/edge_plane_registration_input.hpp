@@ -37,14 +37,14 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setFeatureParamete
 {
   validate(parameters);
   feature_parameters_ = parameters;
-  target_features_.reset();
+  prepared_target_.reset();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const SensorModel& sensor)
 {
   sensor_ = sensor;
-  target_features_.reset();
+  prepared_target_.reset();
 }
 
 /// What the last align() found does not belong to other input.
@@ -121,8 +121,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::takeTarget(const P
     this->target_cloud_updated_ = false;  // mostly nobody asks, and then align() need not make the tree
   }
   map_cloud_.reset();
-  target_features_.reset();  // also under the same pointer the cloud may have changed
-  target_points_.reset();
+  prepared_target_.reset();  // also under the same pointer the cloud may have changed
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>

@@ -11,6 +11,15 @@
 
 namespace pcl_floam {
 
+/// Whether a setting speaks of single points, so that features do not do.
+template <typename PointSource, typename PointTarget, typename Scalar>
+bool EdgePlaneRegistration<PointSource, PointTarget, Scalar>::wantsPoints() const
+{
+  const bool fitness_counts = this->euclidean_fitness_epsilon_ > -std::numeric_limits<double>::max();
+  return !source_features_ && (!this->correspondence_rejectors_.empty() || this->use_reciprocal_correspondence_ ||
+                               fitness_counts || hasSearchOfItsOwn());
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 bool EdgePlaneRegistration<PointSource, PointTarget, Scalar>::hasSearchOfItsOwn() const
 {
