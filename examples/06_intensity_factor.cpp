@@ -21,7 +21,9 @@ public:
   {
     scan_.clear();
     for (std::size_t i = 0; i < scan.size; i += kEvery) {
-      scan_.push_back({{scan.x(i), scan.y(i), scan.z(i)}, scan.intensityOf(i)});
+      if (std::isfinite(scan.x(i))) {
+        scan_.push_back({{scan.x(i), scan.y(i), scan.z(i)}, scan.intensityOf(i)});
+      }
     }
   }
 

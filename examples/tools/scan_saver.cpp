@@ -81,7 +81,7 @@ void ScanSaver::save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, 
   times_.push_back(time);
   correct(scan, report);
   waiting_.push_back({scan, cloud, report, parameters});
-  if (!report.provisional) {
+  if (!report.provisional && report.state != TrackingState::initialized) {
     writeWaiting();
   }
 }

@@ -30,7 +30,8 @@ public:
   ~VoxelLayer() override = default;
 
   /// Adds a point in the world frame; points of one voxel are averaged. One that is not finite, or more than a
-  /// billion blocks away, is left out.
+  /// billion blocks away, is left out. Blocks that are a million apart in a row, hundreds of kilometres, are taken for
+  /// one.
   void insert(const Eigen::Vector3d& point);
 
   /// \ref insert for \p count points, in their order; fetches for the later ones while it works on the first.

@@ -60,10 +60,9 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found)
 void Track::beginMap()
 {
   if (map_) {
-    map_->clear();
-  } else {
-    map_.emplace(settings_);
+    return map_->clear();
   }
+  map_.emplace(settings_);
 }
 
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
@@ -208,9 +207,8 @@ bool Track::seek(const Sweep& sweep, const SurfaceRegistration& found)
     return false;
   }
   const Doubt doubt = is_anywhere ? kAround : kGiven;
-  const std::optional<SE3> place =
-      betterPlace(problemFor(sweep),
-                  is_anywhere ? anyTurnOf({pose_.middle, motion_.pose()}) : std::vector<SE3>{motion_.pose()}, doubt);
+  const auto guesses = is_anywhere ? anyTurnOf({pose_.middle, motion_.pose()}) : std::vector<SE3>{motion_.pose()};
+  const std::optional<SE3> place = betterPlace(problemFor(sweep), guesses, doubt);
   if (place) {
     sweeps_to_wait_ = kSweepsUntilKnown;
     settle(sweep, *place, doubt);

@@ -68,6 +68,8 @@ void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vect
 {
   std::vector<std::uint32_t> lasers(space.size() + edges.size());
   std::iota(lasers.begin(), lasers.end(), 0U);
+  space_->beginKeyframe();
+  edges_.beginKeyframe();
   space_->insert(space.data(), lasers.data(), space.size());
   edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
 }

@@ -107,15 +107,24 @@ void addResiduals(const std::vector<Correspondence>& correspondences, const Swee
 /// Equations of the perturbation as residuals: sqrt(d) (v^T x + v^T b / d) for each eigenvalue d of H and its v.
 class EquationsCost : public ceres::SizedCostFunction<6, 6> {
 public:
-  explicit EquationsCost(const PoseEquations& equations)
+  EquationsCost(const PoseEquations& equations, const DegreesOfFreedom& locked)
   {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(equations.information);
+    Eigen::Matrix<double, 6, 6> information = equations.information;
+    Eigen::Matrix<double, 6, 1> gradient = equations.gradient;
+    for (int i = 0; i < 6; ++i) {
+      if (locked[static_cast<std::size_t>(i)]) {
+        information.row(i).setZero();
+        information.col(i).setZero();
+        gradient[i] = 0.0;
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
     const double negligible = 1e-12 * solver.eigenvalues()[5];
     for (int i = 0; i < 6; ++i) {
       const double d = solver.eigenvalues()[i];
       if (d > negligible) {
         derivative_.row(i) = std::sqrt(d) * solver.eigenvectors().col(i).transpose();
-        residual_[i] = solver.eigenvectors().col(i).dot(equations.gradient) / std::sqrt(d);
+        residual_[i] = solver.eigenvectors().col(i).dot(gradient) / std::sqrt(d);
       }
     }
   }
@@ -153,7 +162,7 @@ Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& mod
   ceres::Problem ceres_problem;
   addResiduals(correspondences.edges, model, problem.parameters.locked, edge_loss.get(), perturbation, ceres_problem);
   addResiduals(correspondences.planes, model, problem.parameters.locked, plane_loss.get(), perturbation, ceres_problem);
-  ceres_problem.AddResidualBlock(new EquationsCost(besides), nullptr, perturbation.data());
+  ceres_problem.AddResidualBlock(new EquationsCost(besides, problem.parameters.locked), nullptr, perturbation.data());
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;

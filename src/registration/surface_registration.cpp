@@ -184,18 +184,22 @@ private:
       return Square6(scale.asDiagonal() * m * scale.asDiagonal() / e.weight);
     };
     const Square6 noise = scaled(e.noise_information);
+    const Square6 besides = scaled(kResidualsBesideMotion * this->besides().information);
     const Eigen::SelfAdjointEigenSolver<Square6> solver(scaled(e.information));
     Square6 strong = Square6::Identity();
     for (int i = 0; i < 6; ++i) {
       const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
       const double told = std::max(0.0, solver.eigenvalues()[i]);
-      if (told < direction.dot(noise * direction) + kNothing) {
-        weak_.push_back({direction, told});
+      const double noise_along = direction.dot(noise * direction) + kNothing;
+      if (told < noise_along) {
         strong -= direction * direction.transpose();
+        if (direction.dot(besides * direction) < noise_along) {  // else somebody tells of it
+          weak_.push_back({direction, told});
+        }
       }
     }
     strong_ = scale.asDiagonal() * strong * scale.cwiseInverse().asDiagonal();
-    return !weak_.empty();
+    return strong != Square6(Square6::Identity());
   }
 
   [[nodiscard]] Vector6 twist() const { return problem_.prior.fraction * placingVelocity(); }

@@ -99,6 +99,17 @@ TEST_F(FeatureRegistrationTest, AFactorThatIsSureDecidesByBothSolvers)
   }
 }
 
+TEST_F(FeatureRegistrationTest, AFactorMovesNothingThatIsLocked)
+{
+  mapRoom();
+  factors_ = {std::make_shared<Place>(truth_.translation + Eigen::Vector3d(0.0, 0.0, 0.5))};
+  parameters_.locked = kPlanarMotion;
+  for (const SolverKind solver : {SolverKind::gauss_newton, SolverKind::ceres}) {
+    parameters_.solver = solver;
+    EXPECT_NEAR(run(guess_).target_T_source.translation.z(), guess_.translation.z(), 1e-6) << toString(solver);
+  }
+}
+
 TEST_F(FeatureRegistrationTest, RecoversAKnownPose)
 {
   for (const SearchMethod search : {SearchMethod::voxel, SearchMethod::kdtree}) {

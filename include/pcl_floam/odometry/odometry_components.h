@@ -13,9 +13,11 @@
 namespace pcl_floam {
 
 /// What of \ref Odometry is replaced or added. What is empty stays as it is. The objects are shared by copies of an
-/// odometry, and called from its threads.
+/// odometry, and called from its threads, several at a time while several tracks are followed: they must not throw, and
+/// what is no factor must give the same for the same input whenever it is asked.
 struct OdometryComponents {
-  /// What else is known of each pose (`world_T_sensor` in the middle of the sweep).
+  /// What else is known of each pose (`world_T_sensor` in the middle of the sweep). Until it is settled how the sensor
+  /// began to move, the pose may be that of another instant of the first sweep's motion: off by a part of a sweep.
   std::vector<PoseFactor::ConstPtr> factors;
 
   /// Which scans enter the map that is registered with. By default, by surfaces, those 0.3 cells or 0.1 rad apart; by

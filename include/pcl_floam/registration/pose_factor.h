@@ -31,8 +31,8 @@ struct PoseEquations {
 /// Something that is known of a pose: the ground that a robot stands on, a position from satellites, the brightness of
 /// points. It counts beside the points by its variance, in every iteration.
 ///
-/// What it gives must be a function of the pose alone while a registration runs, and it may be asked by several threads
-/// at a time.
+/// What it gives must be finite, a function of the pose alone while a registration runs, and it may be asked by several
+/// threads at a time. It must not throw.
 class PoseFactor {
 public:
   using Ptr = std::shared_ptr<PoseFactor>;
