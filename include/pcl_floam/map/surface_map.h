@@ -15,7 +15,7 @@ namespace pcl_floam {
 /// What scans are registered with, and what keyframes enter. The odometry's own is a pyramid of voxels.
 ///
 /// While it is unclear how the sensor began to move, several maps are kept side by side: each is made by \ref makeEmpty
-/// or \ref copy of another, which several threads may ask for at a time, as \ref find; all else by one. Nothing may
+/// or `copy` of another, which several threads may ask for at a time, as \ref find; all else by one. Nothing may
 /// throw.
 class SurfaceMap : public SurfaceSearch {
 public:
