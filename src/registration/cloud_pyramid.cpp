@@ -160,7 +160,8 @@ CloudLevel withoutScanLines(CloudLevel all)
   if (!sampling.in_lines) {
     return all;
   }
-  for (double voxel = kFirstVoxel * sampling.spacing; voxel > 0.0; voxel *= 2.0) {
+  double voxel = kFirstVoxel * sampling.spacing;
+  while (voxel > 0.0) {
     CloudLevel thinned = bareThinned(all, voxel);
     if (thinned.tree.size() < kCoarsestPoints) {
       break;
@@ -168,6 +169,7 @@ CloudLevel withoutScanLines(CloudLevel all)
     if (!findSampling(thinned.tree, places).in_lines) {
       return thinned;
     }
+    voxel *= 2.0;
   }
   return all;
 }
