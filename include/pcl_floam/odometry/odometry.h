@@ -27,10 +27,11 @@ enum class MapUse : std::uint8_t {
 /// The odometry for scans whose point type is known only at run time (\ref CloudView).
 /// Most users want \ref Odometry.
 ///
-/// One object per sensor. Objects share nothing, so each may be used by a thread of its own; one object may be used by
-/// any thread, by one at a time. The getters, too, look at the state that \ref track changes: they give no snapshot
-/// while another thread tracks. Whoever needs one copies the report, or the odometry, between two scans.
-/// A copy goes on by itself from where the original is; what was moved from can only be assigned to or destroyed.
+/// One object per sensor. Objects share nothing but what \ref setComponents hands in, so each may be used by a thread
+/// of its own; one object may be used by any thread, by one at a time. The getters, too, look at the state that \ref
+/// track changes: they give no snapshot while another thread tracks. Whoever needs one copies the report, or the
+/// odometry, between two scans. A copy goes on by itself from where the original is; what was moved from can only be
+/// assigned to or destroyed.
 class OdometryPipeline {
 public:
   /// \throws std::invalid_argument if a parameter is out of its range.

@@ -20,8 +20,10 @@ namespace pcl_floam {
 class CloudPyramid;
 
 /// A cloud made ready for registration: points about their centroid, a search tree, the shape around each point, and
-/// thinned versions of all that, made when they are first needed. It does not depend on what it was registered with,
-/// and may be registered in several threads at a time.
+/// thinned versions of all that, made when they are first needed. Where a scanner's points lie so much closer along its
+/// scan lines than across them that neighbourhoods show these and no surfaces, the means of its points within voxels
+/// stand for them from the beginning. It does not depend on what it was registered with, and may be registered in
+/// several threads at a time.
 class PreparedCloud {
 public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at

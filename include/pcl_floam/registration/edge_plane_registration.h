@@ -51,7 +51,8 @@ public:
 /// - Features set by setSourceFeatures(), or those of the source if both clouds are lidar scans with scan lines,
 ///   against the map set by setInputTargetMap() or the target's features: the paper's way (\ref registerFeatures).
 /// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
-///   with no length that is not relative to the clouds' spacing.
+///   with no length that is not relative to the clouds' spacing. A cloud whose points show its sensor's scan lines
+///   rather than its surfaces is thinned to the means of its points within voxels throughout.
 ///
 /// Should scans have too few features in common, all their points are tried, too.
 ///
@@ -66,7 +67,7 @@ public:
 ///   the iterations on the full clouds as they end ICP. Unset, these end when no point moves by more than a small
 ///   fraction of the spacing. Those on features and on thinned clouds do not end sooner for a coarse threshold.
 /// - Rejectors run in each iteration, reciprocal matches are honoured, and the visualisation callback is called once an
-///   iteration on the full clouds. Rejectors see the thinned clouds' matches, too: these name the points nearest to the
+///   iteration on the full clouds. Matches of thinned clouds, which rejectors see, too, name the points nearest to the
 ///   voxels' means.
 /// - A search object set by `setSearchMethodTarget` is used as it is if it is told not to be recomputed, is of a class
 ///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
