@@ -87,6 +87,7 @@ struct FeatureOdometry : OdometryRun {
   {
     motion = MotionEstimate(world_T_sensor);
     told_motion.forget();
+    rest = Rest();
     pose = {world_T_sensor};
     periods = periods_error = 0.0;
     is_placed = false;
@@ -272,6 +273,7 @@ struct FeatureOdometry : OdometryRun {
     } else if (state == TrackingState::doubtful) {
       report.covariance.topLeftCorner<3, 3>() += told_motion.open();
     }
+    noteRest();
     report.milliseconds.total = watch.total();
   }
 };

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "motion/pending_hint.h"
+#include "motion/rest.h"
 #include "motion/scan_clock.h"
 #include "odometry/map_building.h"
 #include "odometry/scan_preparation.h"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -32,6 +34,8 @@ struct OdometryRun {
   PreparedScan scan;
   PendingHint hint;
   ToldMotion told_motion;
+  Rest rest;
+  int poses_given = 0;               ///< of scans that were registered
   double sweep_fraction = 0.0;       ///< of the last scan that told of it
   double periods = 0.0;              ///< since the last scan that was registered ...
   double periods_error = 0.0;        ///< ... and how far off that may be
@@ -83,6 +87,35 @@ struct OdometryRun {
     }
     report.reason = "the scans hardly tell how the sensor moves along some direction: the pose may be wrong";
     return TrackingState::doubtful;
+  }
+
+  /// A sensor that stands still is where its poses are in the mean. Those since it came to rest are corrected as soon
+  /// as it is known that it did, but for the first scan's, which is given.
+  void noteRest()
+  {
+    if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
+      rest = Rest();
+      return;
+    }
+    std::vector<SE3>& corrected = report.corrected_poses;
+    if (!corrected.empty()) {
+      rest = Rest();
+      std::for_each(corrected.begin(), corrected.end(), [&](const SE3& pose) { rest.take(pose); });
+      poses_given = static_cast<int>(corrected.size());
+    }
+    const bool was_known = rest.isAtRest() && corrected.empty();
+    rest.take(report.world_T_sensor);
+    ++poses_given;
+    report.at_rest = rest.isAtRest();
+    if (!report.at_rest) {
+      return;
+    }
+    report.world_T_sensor = rest.pose();
+    if (!was_known) {
+      const auto before = static_cast<std::size_t>(rest.poses() < poses_given ? rest.poses() - 1 : rest.poses() - 2);
+      corrected.resize(std::max(before, corrected.size()));
+      std::fill_n(corrected.rbegin(), before, rest.pose());
+    }
   }
 
   /// Periods since the last scan that a velocity holds for: it is not known for ever.

@@ -243,6 +243,7 @@ struct SurfaceOdometry : OdometryRun {
       const Eigen::Matrix3d& turn = world_T_track.rotation;
       report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open() * turn.transpose();
     }
+    noteRest();
     first_scans.give(report.world_T_sensor);
     if (tracker.isTracking() && !tracker.mayCorrect()) {
       first_scans.close();
@@ -283,6 +284,7 @@ struct SurfaceOdometry : OdometryRun {
     }
     tracker.place(world_T_track.inverse() * world_T_sensor);
     told_motion.forget();
+    rest = Rest();
     first_scans.close();
     periods = periods_error = 0.0;
   }

@@ -1,5 +1,6 @@
 // The odometry on sweeps that a moving lidar takes of a furnished room.
 #include "support/moving_room.h"
+#include "support/random_motion.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -47,6 +48,39 @@ TEST(Odometry, RecoversAnAcceleratedMotion)
       EXPECT_LT(angleError(odometry.pose(), acceleratedPath, k), 0.006) << toString(mode) << ", scan " << k;
     }
   }
+}
+
+TEST(Odometry, StandsStillWhereTheSensorDoes)
+{
+  constexpr int kStops = 6;
+  constexpr int kStarts = 30;
+  const Path path = [](double t) {
+    constexpr double kSlow = 0.2;
+    return steadyPath(kSlow * (t < kStops ? t : std::max(double{kStops}, t + kStops - kStarts)));
+  };
+  Odometry<PointXYZIRT> odometry(defaults());
+  std::vector<SE3> poses;
+  for (int k = 0; k < kStarts + 4; ++k) {
+    Cloud noisy = sweep(path, k);
+    std::mt19937 random(static_cast<std::uint32_t>(k));
+    for (PointXYZIRT& point : noisy) {
+      point.getVector3fMap() *= 1.0F + static_cast<float>(uniform(random, 0.002));
+    }
+    const OdometryReport& report = odometry.track(noisy);
+    ASSERT_LE(report.corrected_poses.size(), poses.size());
+    std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
+              poses.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
+    poses.push_back(report.world_T_sensor);
+    EXPECT_LT(error(poses.back(), path, k), 0.03) << k;
+    EXPECT_FALSE(report.at_rest && (k < kStops || k > kStarts)) << k;
+    EXPECT_TRUE(report.at_rest || k != kStarts - 1);
+  }
+  const auto first = poses.begin() + kStops + 2;
+  double most = 0.0;
+  for (auto pose = first; pose != poses.begin() + kStarts; ++pose) {
+    most = std::max(most, (pose->translation - first->translation).norm());
+  }
+  EXPECT_LT(most, 0.004);
 }
 
 TEST(Odometry, CompensationIsWorthIt)

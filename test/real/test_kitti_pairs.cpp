@@ -1,4 +1,6 @@
 // Pairs of real scans, raw and thinned: skipped, and saying so, where they are not there.
+#include "real/real_data.h"
+
 #include <pcl_floam/io/trajectory.h>
 #include <pcl_floam/registration/edge_plane_registration.h>
 
@@ -8,12 +10,11 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <tuple>
 
-namespace pcl_floam {
+namespace pcl_floam::test {
 namespace {
 
 using Point = pcl::PointXYZ;
@@ -21,8 +22,7 @@ using Cloud = pcl::PointCloud<Point>;
 
 std::filesystem::path folder()
 {
-  const char* given = std::getenv("PCL_FLOAM_DATA");
-  return std::filesystem::path(given != nullptr ? given : PCL_FLOAM_DEFAULT_DATA) / "kitti_raw_0001";
+  return dataFolder("kitti_raw_0001");
 }
 
 /// \param leaf m; 0: as it is
@@ -51,9 +51,7 @@ class KittiPairs : public ::testing::Test {
 protected:
   void SetUp() override
   {
-    if (!std::filesystem::exists(folder())) {
-      GTEST_SKIP() << "SKIPPED: no real data at " << folder() << "; set PCL_FLOAM_DATA to the folder above it";
-    }
+    SKIP_WITHOUT(folder());
     for (const StampedPose& pose : readTrajectory(folder() / "poses.txt")) {
       poses.push_back(pose.world_T_sensor);
     }
@@ -103,4 +101,4 @@ TEST_F(KittiPairs, ScansTwentyMetresApartAreFoundFromHalfAMetreAndThreeDegreesOf
 }
 
 }  // namespace
-}  // namespace pcl_floam
+}  // namespace pcl_floam::test

@@ -1,4 +1,6 @@
 // Real drives, which are not part of the repository: skipped, and saying so, where they are not there.
+#include "real/real_data.h"
+
 #include <pcl_floam/evaluation/trajectory_metrics.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/trajectory.h>
@@ -7,22 +9,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
-namespace pcl_floam {
+namespace pcl_floam::test {
 namespace {
-
-std::filesystem::path dataFolder(const std::string& name)
-{
-  const char* given = std::getenv("PCL_FLOAM_DATA");
-  return std::filesystem::path(given != nullptr ? given : PCL_FLOAM_DEFAULT_DATA) / name;
-}
-
-#define SKIP_WITHOUT(folder)                                                                                  \
-  if (!std::filesystem::exists(folder)) {                                                                     \
-    GTEST_SKIP() << "SKIPPED: no real data at " << (folder) << "; set PCL_FLOAM_DATA to the folder above it"; \
-  }
 
 std::vector<SE3> trackAll(const ScanSource& scans, OdometryPipeline& odometry)
 {
@@ -144,4 +134,4 @@ TEST(KittiRaw0048, PcdSequenceIsTrackedSmoothly)
 }
 
 }  // namespace
-}  // namespace pcl_floam
+}  // namespace pcl_floam::test

@@ -54,8 +54,11 @@ struct OdometryReport {
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
-  /// was missing; for whoever keeps the trajectory. Empty otherwise.
+  /// was missing, and where the sensor has come to rest; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
+  /// The sensor stands still, as far as its poses tell: ten or more of them differ by noise alone. `world_T_sensor` is
+  /// then their mean, and those since it came to rest are corrected to it once.
+  bool at_rest = false;
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
   double explained = 0.0;

@@ -1,0 +1,48 @@
+#include "motion/rest.h"
+
+namespace pcl_floam {
+
+/// In root mean square steps: of white noise about one pose in ten thousand is farther from the mean (four standard
+/// deviations), a steady motion is so from the seventh pose on.
+bool Rest::Scatter::isFar(const Eigen::Vector3d& from_mean, int poses) const
+{
+  constexpr double kFar = 3.0;
+  return poses > 1 && from_mean.squaredNorm() * (poses - 1) > kFar * kFar * squares_;
+}
+
+void Rest::Scatter::add(const Eigen::Vector3d& step)
+{
+  squares_ += step.squaredNorm();
+  products_ += step.dot(last_);
+  last_ = step;
+}
+
+/// Steps of white noise have a correlation of -1/2 with the ones before, those of a steady motion of 1; a single jump
+/// has none.
+bool Rest::Scatter::isNoise() const
+{
+  constexpr double kUndone = 0.1;
+  return products_ <= -kUndone * squares_;
+}
+
+void Rest::take(const SE3& pose)
+{
+  constexpr int kFewest = 10;  // poses: noise of fewer looks like motion, and slow motion like noise
+  const Eigen::Vector3d from_mean = pose.translation - mean_.translation;
+  const Eigen::Vector3d turned = logSO3(pose.rotation * mean_.rotation.transpose());
+  if (poses_ == 0 || position_.isFar(from_mean, poses_) || rotation_.isFar(turned, poses_)) {
+    *this = Rest();
+    poses_ = 1;
+    mean_ = last_ = pose;
+    return;
+  }
+  position_.add(pose.translation - last_.translation);
+  rotation_.add(logSO3(pose.rotation * last_.rotation.transpose()));
+  last_ = pose;
+  ++poses_;
+  mean_.translation += from_mean / poses_;
+  mean_.rotation = nearestRotation(expSO3(turned / poses_) * mean_.rotation);
+  is_at_rest_ = is_at_rest_ || (poses_ >= kFewest && position_.isNoise() && rotation_.isNoise());
+}
+
+}  // namespace pcl_floam

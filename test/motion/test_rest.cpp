@@ -1,0 +1,104 @@
+// Whether the sensor stands still: noise about one pose does, at any scale, and nothing that moves.
+#include "motion/rest.h"
+
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+namespace pcl_floam {
+namespace {
+
+constexpr int kScans = 100;
+constexpr double kNoise = 0.002;  // m and rad, to either side
+
+using Path = std::function<SE3(int)>;
+
+SE3 standing(int /*scan*/)
+{
+  return exp((Vector6() << 3.0, -2.0, 1.0, 0.1, -0.2, 2.0).finished());
+}
+
+SE3 noisy(const SE3& pose, std::mt19937& random, double noise)
+{
+  const Eigen::Vector3d off = test::randomVector(random, noise);
+  return {pose.rotation * expSO3(test::randomVector(random, noise)), pose.translation + off};
+}
+
+/// Scans after which a path was called rest.
+int scansAtRest(const Path& path, double noise, std::uint32_t seed)
+{
+  std::mt19937 random(seed);
+  Rest rest;
+  int count = 0;
+  for (int scan = 0; scan < kScans; ++scan) {
+    rest.take(noisy(path(scan), random, noise));
+    count += rest.isAtRest() ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Rest, StandsWhereItsPosesAreInTheMean)
+{
+  for (const double noise : {1e-5, kNoise, 1.0}) {  // whatever the unit
+    std::mt19937 random(7);
+    Rest rest;
+    for (int scan = 0; scan < kScans; ++scan) {
+      rest.take(noisy(standing(scan), random, noise));
+    }
+    ASSERT_TRUE(rest.isAtRest()) << noise;
+    EXPECT_EQ(rest.poses(), kScans);
+    const SE3 off = standing(0).inverse() * rest.pose();
+    EXPECT_LT(off.translation.norm(), 0.25 * noise);
+    EXPECT_LT(rotationAngle(off.rotation), 0.25 * noise);
+  }
+}
+
+TEST(Rest, IsFoundSoonWhateverTheNoise)
+{
+  int found = 0;
+  constexpr int kSeeds = 50;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    found += scansAtRest(standing, kNoise, static_cast<std::uint32_t>(seed));
+  }
+  EXPECT_GT(found, 0.8 * kSeeds * kScans);
+}
+
+TEST(Rest, NothingThatMovesStandsStill)
+{
+  const auto line = [](int scan) { return SE3(Eigen::Matrix3d::Identity(), {3.0 * kNoise * scan, 0.0, 0.0}); };
+  const auto from_rest = [](int scan) { return SE3(Eigen::Matrix3d::Identity(), {kNoise * scan * scan, 0.0, 0.0}); };
+  const auto turn = [](int scan) { return SE3(expSO3({0.0, 0.0, 3.0 * kNoise * scan}), Eigen::Vector3d::Zero()); };
+  const auto to_and_fro = [](int scan) {
+    return SE3(Eigen::Matrix3d::Identity(), {0.0, 10.0 * kNoise * std::sin(0.6 * scan), 0.0});
+  };
+  const auto jump = [](int scan) {  // and a steady motion that is lost in the noise of the jump
+    return SE3(Eigen::Matrix3d::Identity(), {scan > 0 ? 1.0 + 3.0 * kNoise * scan : 0.0, 0.0, 0.0});
+  };
+  for (const Path& path : std::vector<Path>{line, from_rest, turn, to_and_fro, jump}) {
+    for (std::uint32_t seed = 0; seed < 50; ++seed) {
+      EXPECT_EQ(scansAtRest(path, kNoise, seed), 0) << seed;
+    }
+  }
+}
+
+TEST(Rest, EndsAsSoonAsAPoseIsFarOff)
+{
+  std::mt19937 random(3);
+  Rest rest;
+  for (int scan = 0; scan < kScans; ++scan) {
+    rest.take(noisy(standing(scan), random, kNoise));
+  }
+  ASSERT_TRUE(rest.isAtRest());
+  const SE3 moved = standing(0) * exp((Vector6() << 10.0 * kNoise, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
+  rest.take(moved);
+  EXPECT_FALSE(rest.isAtRest());
+  EXPECT_EQ(rest.poses(), 1);
+  EXPECT_EQ(rest.pose().translation, moved.translation);
+}
+
+}  // namespace
+}  // namespace pcl_floam
