@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# What the paper leaves open or prints differently from what it says, each reading on real and simulated scans.
+# What the paper leaves open or prints differently from what it says, each reading on real and simulated scans: of the
+# family `tune`, as these are choices.
 #
 #   bash examples/experiments/04_choices.sh [--quick] [--data DIR] [--output DIR]
 #
@@ -12,7 +13,7 @@ plans = [("warehouse", "vlp16", 11, 600, []), ("handheld", "vlp16", 12, 300, [])
          ("corridor", "vlp16", 14, 600, [])]
 if options.quick:
     plans = [("warehouse", "vlp16", 11, 60, []), ("handheld", "vlp16", 12, 60, [])]
-data = simulate(options, plans)
+data = simulate(options, plans, family="tune")
 names = [f"{world} {sensor}" for world, sensor, *_ in plans]
 real = real_data("kitti_raw_0001")
 with_real = "kitti-0001" in options.records.of_data("name") if options.tables_only else real.is_dir()

@@ -54,7 +54,7 @@ def simulated_runs():
         count = min(scans, QUICK_SCANS) if options.quick else scans
         extra = extra + ["--family", "report"]
         seeds = SEEDS[:1 if options.quick else None]
-        data = simulate(options, [(world, sensor, seed, count, extra) for seed in seeds])
+        data = simulate(options, [(world, sensor, seed, count, extra) for seed in seeds], realism=None)
         command = f"pcl_floam_simulate {world} --sensor {sensor} --scans {count} " + " ".join(extra)
         yield name, command, execute(options, [Run(d, "default", judge=doubted) for d in data])
 

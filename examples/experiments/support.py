@@ -79,22 +79,25 @@ class Dataset:
         self.odometry_options += ["--pose-instant", "middle"]
 
 
-def simulate(options, plans):
-    """Makes what is not there yet, several at a time. A plan: (world, sensor or None, seed, scans or 0, extra options).
-    Returns the data sets in the plans' order."""
+def simulate(options, plans, family="report", realism="real"):
+    """Makes what is not there yet, several at a time. A plan: (world, sensor or None, seed, scans or 0, extra options, of
+    which --family and --realism go before the arguments; None: the simulator's default). Returns the data sets in the
+    plans' order."""
+    usual = [("--family", family), ("--realism", realism)]
 
     def one(plan):
         world, sensor, seed, scans, extra = plan
         extra = [str(word) for word in extra]
+        extra += [word for name, value in usual if value and name not in extra for word in (name, value)]
         parts = [world, sensor or "usual", f"seed{seed}", f"{scans}scans" if scans else "all"]
         name = "-".join(parts + [pathlib.Path(word).stem if "/" in word else word.strip("-") for word in extra])
         folder = options.arguments.data / name
         if not options.tables_only and not (folder / "poses_end.txt").exists():
             command = [world, "--seed", seed] + (["--sensor", sensor] if sensor else [])
             make(options, folder, command + (["--scans", scans] if scans else []) + extra)
-        family = extra[extra.index("--family") + 1] if "--family" in extra else "tune"
+        drawn_of = extra[extra.index("--family") + 1] if "--family" in extra else "tune"
         return Dataset(name, folder / "scans", folder / "poses_end.txt", folder / "poses_middle.txt", world=world,
-                       sensor=sensor, family=family, seed=seed, count=scans or None, options=extra)
+                       sensor=sensor, family=drawn_of, seed=seed, count=scans or None, options=extra)
 
     with concurrent.futures.ThreadPoolExecutor(options.arguments.jobs) as pool:
         return list(pool.map(one, plans))
