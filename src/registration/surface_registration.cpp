@@ -1,5 +1,6 @@
 #include "registration/surface_registration.h"
 
+#include "registration/net_information.h"
 #include "registration/surface_residuals.h"
 
 #include <Eigen/Cholesky>
@@ -110,7 +111,8 @@ private:
     report.point_correspondences = sums.points;
     report.plane_inliers = sums.fits;
     report.information = strong_.transpose() * sums.equations.information * strong_;
-    result.told = told(report.information / kResidualsBesideMotion + besides().information);
+    const Matrix6 net = netInformation(sums.equations, report.information);
+    result.told = told(net / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
     report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
@@ -171,15 +173,14 @@ private:
   /// Those along which no more is told than noise of the planes' normals would, so that it follows the sensor wherever
   /// it goes. Along them the pose is left to the prior (solution remapping after Zhang and Singh, 2016). They are
   /// eigenvectors of H itself, unlike InformationAnalysis's: without them H says exactly nothing of what is not seen.
+  /// Chance is not asked: what lines and points hold by a little is better followed than left to the prior.
   bool findWeakDirections(const NormalEquations& e)
   {
     constexpr double kNothing = 1e-6;  // of residuals that tell of the direction alone
     if (!(e.squared_extent > 0.0)) {
       return false;
     }
-    const double per_metre = std::sqrt(e.weight / e.squared_extent);
-    Vector6 scale;
-    scale << 1.0, 1.0, 1.0, per_metre, per_metre, per_metre;
+    const Vector6 scale = commonUnits(e);
     const auto scaled = [&](const Matrix6& m) {
       return Square6(scale.asDiagonal() * m * scale.asDiagonal() / e.weight);
     };

@@ -23,11 +23,15 @@ constexpr double kLasersOfAPlane = 3.0;
 /// Width of the kernel in standard deviations (Geman and McClure): beyond it a residual hardly counts.
 constexpr double kKernelWidth = 2.0;
 
+/// A shape has at least this variance along itself, m^2.
+constexpr double kNoExtent = 1e-9;
+
 constexpr std::size_t kPointsPerChunk = 64;
 static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
 
-/// What a normal that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x); the upper half.
-void addNormalsNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
+/// What a direction that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x); the upper
+/// half.
+void addNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
 {
   const Eigen::Vector3d turned = variance * arm;
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -71,6 +75,7 @@ void SurfaceSums::add(const SurfaceSums& other)
 {
   equations.information += other.equations.information;
   equations.noise_information += other.equations.noise_information;
+  equations.chance_information += other.equations.chance_information;
   equations.coupling += other.equations.coupling;
   equations.twist_information += other.equations.twist_information;
   equations.gradient += other.equations.gradient;
@@ -135,13 +140,13 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   }
   rows.addTo(sums.equations);
   mirrorUpperHalf(sums.equations.noise_information);
+  mirrorUpperHalf(sums.equations.chance_information);
   return sums;
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
 void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const
 {
-  constexpr double kNoExtent = 1e-9;  // m^2
   const Eigen::Vector3d from_center = p.place - plane.center;
   const double r = plane.direction.dot(from_center);
   const double along = std::max(0.0, from_center.squaredNorm() - r * r);
@@ -156,7 +161,7 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
-  addNormalsNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
+  addNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
   ++sums.planes;
 }
 
@@ -172,12 +177,18 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, told, sums);
   rows.add(first, p.arm, length, w, p.since_middle);
   rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
+  // Two points go into the line; its direction may be off to two sides.
+  const double count = std::max(1.0, static_cast<double>(line.count));
+  const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
+  addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
   ++sums.lines;
 }
 
 /// The distance to the nearest point, as far as it is felt.
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
+  // Over the root of a cell's points: how much seems felt along what they fill evenly.
+  constexpr double kFeltByChance = 0.25;
   const Eigen::Vector3d r = p.place - near.center;
   const double length = r.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
@@ -185,6 +196,8 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, told, sums);
   ++sums.points;
   rows.add(near.felt, r, p.arm, w, p.since_middle);
+  addNoise(w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count))), p.arm,
+           sums.equations.chance_information);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.

@@ -181,6 +181,37 @@ TEST(VoxelPyramid, FindsALineThatThreeLasersSee)
   EXPECT_NE(pole(2).kind, SurfaceKind::line);
 }
 
+/// A head fires column by column. Far along a wall, or on the ground, these lie as far apart as cells are wide.
+TEST(VoxelPyramid, ColumnsOfReturnsOnAPlaneAreNoLinesOfTheWorld)
+{
+  constexpr int kLasers = 8;
+  constexpr double kBetween = 0.05;  // m, of a column's points
+  const auto addColumn = [](VoxelPyramid& map, double x) {
+    for (int laser = 0; laser < kLasers; ++laser) {
+      for (int i = 0; i < 3; ++i) {
+        map.insert({x, 0.25, 0.13 * laser + kBetween * i}, static_cast<std::uint32_t>(laser));
+      }
+    }
+  };
+  const Eigen::Vector3d on_column(0.3, 0.25, 0.3);
+  VoxelPyramid pole(kSide);
+  addColumn(pole, 0.3);
+  EXPECT_EQ(pole.surfaceAt(on_column, kStranger).kind, SurfaceKind::line);
+
+  VoxelPyramid wall(kSide);
+  for (const double x : {-0.2, 0.3, 0.8, 1.3}) {
+    addColumn(wall, x);
+  }
+  const Surface surface = wall.surfaceAt(on_column, kStranger);
+  ASSERT_EQ(surface.kind, SurfaceKind::plane);
+  EXPECT_NEAR(std::abs(surface.direction.y()), 1.0, 1e-6);
+
+  VoxelPyramid pole_before_wall(kSide);  // a line that sticks out is one
+  addFloor(pole_before_wall, Eigen::Vector3d(0.5, 0.5, 0.1), 0.49, 0.12, kLasers);
+  addColumn(pole_before_wall, 0.3);
+  EXPECT_NE(pole_before_wall.surfaceAt(on_column + Eigen::Vector3d(0.0, 0.0, 0.5), kStranger).kind, SurfaceKind::plane);
+}
+
 TEST(VoxelPyramid, GivesTheNearestPointOfWhatIsNeitherLineNorPlane)
 {
   VoxelPyramid map(kSide);

@@ -1,9 +1,11 @@
 // Which directions the correspondences constrain, and what follows where they don't.
 #include "registration/information_analysis.h"
+#include "registration/net_information.h"
 #include "registration/normal_equations.h"
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <cmath>
 
@@ -87,6 +89,29 @@ TEST_F(InformationAnalysisTest, WhatTheNormalsNoiseFeignsIsKnown)
   EXPECT_GT(equations.information(0, 0), 0.0);
   EXPECT_NEAR(equations.noise_information(0, 0) / equations.information(0, 0), 1.0, 0.1);
   EXPECT_LT(equations.noise_information(1, 1), 0.01 * equations.information(1, 1));
+}
+
+TEST_F(InformationAnalysisTest, NetOfNoiseASmoothCorridorTellsNothingOfTheWayAlongAndDoorsTellTheirPart)
+{
+  const auto netAlong = [&](std::size_t frames) {
+    const NormalEquations equations = equationsOf(corridorOf(0.03, frames));
+    const Matrix6 net = netInformation(equations, equations.information);
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> net_alone(net);
+    EXPECT_GT(net_alone.eigenvalues()[0], -1e-9 * equations.weight);
+    EXPECT_NEAR(net(1, 1) / equations.information(1, 1), 1.0, 0.01);
+    return net(0, 0) / equations.weight;
+  };
+  constexpr double kOfOne = 1.0 / 2000.0;
+  EXPECT_LT(netAlong(0), 0.1 * 0.03 * 0.03);
+  EXPECT_NEAR(netAlong(20), 20.0 * kOfOne, 0.1 * 20.0 * kOfOne);
+}
+
+TEST_F(InformationAnalysisTest, ChanceIsNoInformationEither)
+{
+  NormalEquations equations = equationsOf(corridorOf(0.0, 20));
+  equations.chance_information = 0.25 * equations.information;
+  const Matrix6 net = netInformation(equations, equations.information);
+  EXPECT_LT((net - 0.75 * equations.information).norm(), 1e-9 * equations.information.norm());
 }
 
 TEST_F(InformationAnalysisTest, TheWayAlongASmoothCorridorIsWeakAndThatAlongOneWithDoorsIsNot)
