@@ -1,7 +1,6 @@
 #include <pcl_floam/registration/cloud_registration.h>
 
 #include "registration/cloud_alignment.h"
-#include "registration/start_choice.h"
 #include "registration/start_search.h"
 #include "registration/weak_directions.h"
 
@@ -52,7 +51,7 @@ public:
   {
     const SE3 guess = alignment_.pose();
     if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
-      StartSearch(source_, target_, run_, alignment_).find();
+      findStart(source_, target_, run_, alignment_);
     }
     LevelAlignment level(source_.full(), target_.full(), run_, true, along());
     const double epsilon = finestEpsilon(level.spacing());
@@ -68,13 +67,11 @@ public:
 
   SE3 runRoughly()
   {
-    const StartChoice choice(source_.full(), target_.full(), run_.max_distance, run_.threads);
-    const SE3 guess = alignment_.pose();
-    StartSearch(source_, target_, run_, alignment_).find();
+    findStart(source_, target_, run_, alignment_);
     const double width = std::max(source_.full().spacing, target_.full().spacing);
-    LevelAlignment level(source_.full(), target_.full(), run_, false, kAlongSurfaces, true, width);
+    LevelAlignment level(source_.full(), target_.full(), run_, false, kAlongSurfaces, width);
     alignment_.align(level, kRoughIterations, kRoughEpsilon * level.spacing(), false);
-    return alignment_.toFrames(choice.better(alignment_.pose(), guess));
+    return alignment_.toFrames(alignment_.pose());
   }
 
 private:

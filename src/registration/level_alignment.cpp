@@ -19,13 +19,12 @@ constexpr double kGateMedians = 3.0;
 }  // namespace
 
 LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
-                               bool finest, double along, bool robust, double width)
+                               bool finest, double along, double width)
     : source_(source),
       target_(target),
       run_(run),
       finest_(finest),
       along_(along),
-      robust_(robust),
       spacing_(std::max(source.spacing, target.spacing)),
       gate_(run.max_distance),
       width_(width),
@@ -116,7 +115,7 @@ void LevelAlignment::keepReciprocal(const SE3& pose)
 
 void LevelAlignment::narrow()
 {
-  if (!robust_) {
+  if (!isRobust()) {
     return;
   }
   std::vector<float> squares;

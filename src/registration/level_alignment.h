@@ -19,11 +19,11 @@ namespace pcl_floam {
 /// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
 class LevelAlignment {
 public:
-  /// \param along how much a direction along a surface counts against the one across it: 1 draws points to points
-  /// \param robust whether far matches are left out and large residuals count less
+  /// \param along how much a direction along a surface counts against the one across it. 1 draws points to points, all
+  ///              of them; with less, far matches are left out and large residuals count less
   /// \param width  m; how far off the pose may be: the kernel takes no smaller residual for an outlier
   LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
-                 double along, bool robust = true, double width = 0.0);
+                 double along, double width = 0.0);
 
   /// Finds the matches at a pose and sums up what they say of a perturbation on the left that turns about the source's
   /// centroid. A match's weight is that of its three dimensions.
@@ -82,6 +82,7 @@ private:
   void searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound);
   void keepReciprocal(const SE3& pose);
   void narrow();
+  [[nodiscard]] bool isRobust() const { return along_ < 1.0; }
   [[nodiscard]] bool coincide() const;
   void listMatches();
   void keepListed();
@@ -95,7 +96,6 @@ private:
   const CloudRegistrationRun& run_;
   bool finest_;
   double along_;
-  bool robust_;
   double spacing_;
   double gate_;  ///< m; pairs farther apart are no matches
   double width_;

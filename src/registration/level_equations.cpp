@@ -61,7 +61,7 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, ResidualRows& ro
 {
   const Residual& r = residuals_[i];
   const auto squared = static_cast<double>(r.squared);
-  const RobustKernel kernel = robust_ ? run_.kernel : RobustKernel::none;
+  const RobustKernel kernel = isRobust() ? run_.kernel : RobustKernel::none;
   const double robust = robustWeight(kernel, squared, scale_);
   const Eigen::Vector3d arm = pose.rotation * source_.tree.points()[i].cast<double>();
   rows.add(r.m.cast<double>(), r.difference.cast<double>(), arm, robust, 0.0);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace pcl_floam {
 
@@ -22,9 +21,6 @@ constexpr double kLineRatio = 0.03;
 
 /// A plane's smallest eigenvalue is at most this times the second.
 constexpr double kPlaneRatio = 0.1;
-
-/// In clouds of fewer points neighbourhoods reach so far that their points need not lie on one surface.
-constexpr std::size_t kSparsePoints = 1000;
 
 /// Points lie in lines where so large a part of the neighbourhoods is so narrow, as the second eigenvalue against the
 /// largest. Evenly sampled surfaces have few, at their edges.
@@ -59,7 +55,7 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
     shape.kind = ShapeKind::plane;
     shape.axis = axes.direction.col(0).cast<float>();
   }
-  const Eigen::Vector3d to_centre = tree.size() < kSparsePoints ? Eigen::Vector3d::Zero() : moments.mean();
+  const Eigen::Vector3d to_centre = moments.mean();
   const Eigen::Vector3d axis = shape.axis.cast<double>();
   if (shape.kind == ShapeKind::plane) {
     shape.to_surface = (axis * axis.dot(to_centre)).cast<float>();
@@ -80,32 +76,11 @@ double spacingFrom(std::vector<float>& radii)
   return std::sqrt(3.14159265358979323846 / kNeighbors) * static_cast<double>(*middle);
 }
 
-/// The neighbourhoods of points one after the other, each of which lies near the one before.
-class Neighborhoods {
-public:
-  Neighborhoods(const PointTree& tree, int number) : tree_(tree), number_(number) {}
-
-  const NearestPoints& of(const Eigen::Vector3f& point)
-  {
-    // The neighbours of the last point are within its radius of that: so many there are here within that and the way.
-    constexpr float kRounding = 1.0001F;
-    const float bound = kRounding * (radius_ + (point - last_).norm());
-    tree_.nearest(point, number_, nearest_, std::isfinite(bound) ? bound * bound : std::numeric_limits<float>::max());
-    last_ = point;
-    radius_ = nearest_.count() < number_ ? std::numeric_limits<float>::infinity() : radius();
-    return nearest_;
-  }
-
-  /// Distance of the farthest neighbour of the last point, m.
-  [[nodiscard]] float radius() const { return std::sqrt(nearest_.squaredDistance(nearest_.count() - 1)); }
-
-private:
-  const PointTree& tree_;
-  int number_;
-  NearestPoints nearest_;
-  Eigen::Vector3f last_ = Eigen::Vector3f::Zero();
-  float radius_ = std::numeric_limits<float>::infinity();
-};
+/// Distance of the farthest neighbour, m.
+float radiusOf(const NearestPoints& neighbors)
+{
+  return std::sqrt(neighbors.squaredDistance(neighbors.count() - 1));
+}
 
 }  // namespace
 
@@ -117,10 +92,11 @@ Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>&
   }
   std::vector<float> radii;
   std::size_t narrow = 0;
-  Neighborhoods neighborhoods(tree, kNeighbors);
+  NearestPoints neighbors;
   for (const Eigen::Vector3f& place : places) {
-    const PrincipalAxes axes = momentsAround(tree, place, neighborhoods.of(place)).axes();
-    radii.push_back(neighborhoods.radius());
+    tree.nearest(place, kNeighbors, neighbors);
+    const PrincipalAxes axes = momentsAround(tree, place, neighbors).axes();
+    radii.push_back(radiusOf(neighbors));
     narrow += axes.variance[1] < kNarrow * axes.variance[2] ? 1 : 0;
   }
   sampling.spacing = spacingFrom(radii);
@@ -130,7 +106,6 @@ Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>&
 
 LocalShapes findLocalShapes(const PointTree& tree, int threads)
 {
-  constexpr std::ptrdiff_t kChunk = 256;
   LocalShapes shapes;
   if (tree.empty()) {
     return shapes;
@@ -138,17 +113,17 @@ LocalShapes findLocalShapes(const PointTree& tree, int threads)
   shapes.shape.resize(tree.size());
   std::vector<float> radii(tree.size());
   const auto size = static_cast<std::ptrdiff_t>(tree.size());
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-  for (std::ptrdiff_t first = 0; first < size; first += kChunk) {
-    Neighborhoods few(tree, kNeighbors);
-    Neighborhoods more(tree, kMoreNeighbors);
-    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(std::min(size, first + kChunk)); ++i) {
-      const Eigen::Vector3f& point = tree.points()[i];
-      shapes.shape[i] = shapeOf(tree, point, few.of(point));
-      radii[i] = few.radius();
-      if (shapes.shape[i].kind == ShapeKind::line) {
-        shapes.shape[i] = shapeOf(tree, point, more.of(point));
-      }
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 256)
+  for (std::ptrdiff_t n = 0; n < size; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Eigen::Vector3f& point = tree.points()[i];
+    NearestPoints neighbors;
+    tree.nearest(point, kNeighbors, neighbors);
+    shapes.shape[i] = shapeOf(tree, point, neighbors);
+    radii[i] = radiusOf(neighbors);
+    if (shapes.shape[i].kind == ShapeKind::line) {
+      tree.nearest(point, kMoreNeighbors, neighbors);
+      shapes.shape[i] = shapeOf(tree, point, neighbors);
     }
   }
   shapes.spacing = spacingFrom(radii);

@@ -17,7 +17,7 @@ enum class ShapeKind : std::uint8_t { point, line, plane };
 struct LocalShape {
   ShapeKind kind = ShapeKind::point;
   Eigen::Vector3f axis = Eigen::Vector3f::Zero();  ///< direction of a line, normal of a plane; unit
-  /// From the point to the line or plane, m: what noise has moved it by. Zero in sparse clouds.
+  /// From the point to the line or plane, m: what noise has moved it by.
   Eigen::Vector3f to_surface = Eigen::Vector3f::Zero();
 
   /// The covariance of where the point may lie on the surface that it stands for, relative to the spread along the

@@ -224,11 +224,11 @@ int PointTree::nearest(const Eigen::Vector3f& query, float& limit) const
   return nearest(query, limit, clear);
 }
 
-void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result, float limit) const
+void PointTree::nearest(const Eigen::Vector3f& query, int k, NearestPoints& result) const
 {
   result.count_ = 0;
   if (!empty()) {
-    SomeNearest collector{points_, result, k, limit};
+    SomeNearest collector{points_, result, k, std::numeric_limits<float>::max()};
     Eigen::Vector3f offset = Eigen::Vector3f::Zero();
     search(0, query, 0.0F, offset, collector);
     collector.keepWanted();

@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -84,9 +83,7 @@ public:
   [[nodiscard]] int nearest(const Eigen::Vector3f& query, float& limit, float& clear) const;
 
   /// The up to \p k nearest points; \p k at most NearestPoints::kCapacity.
-  /// \param limit squared distance within which \p k points are known to be: the less, the faster
-  void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result,
-               float limit = std::numeric_limits<float>::max()) const;
+  void nearest(const Eigen::Vector3f& query, int k, NearestPoints& result) const;
 
 private:
   struct Node {

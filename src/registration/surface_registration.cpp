@@ -73,8 +73,8 @@ private:
       const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);
       sums = accumulate(look, all ? 1 : kFirstStride);
       report.iterations = i + 1;
-      const Column12 step = sums.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
-      if (sums.count() < kFewest) {
+      const Column12 step = sums.equations.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
+      if (sums.equations.count() < kFewest) {
         report.termination = Termination::too_few_correspondences;
       } else if (!step.allFinite()) {
         report.termination = Termination::degenerate;
@@ -106,15 +106,16 @@ private:
     report.target_T_source = report.hasConverged() ? pose_ : problem_.prior.pose;
     report.sweep_twist = twist();
     report.sweep_acceleration = acceleration();
-    report.edge_correspondences = sums.lines;
-    report.plane_correspondences = sums.planes;
-    report.point_correspondences = sums.points;
-    report.plane_inliers = sums.fits;
+    report.edge_correspondences = sums.equations.edges;
+    report.plane_correspondences = sums.equations.planes;
+    report.point_correspondences = sums.equations.points;
+    report.plane_inliers = sums.equations.plane_inliers;
     report.information = strong_.transpose() * sums.equations.information * strong_;
     const Matrix6 net = netInformation(sums.equations, report.information);
     result.told = told(net / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
-    report.residual_rms = sums.robust_weight > 0.0 ? std::sqrt(sums.squares / sums.robust_weight) : 0.0;
+    report.residual_rms =
+        sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;
     result.posterior = posteriorOf(sums);
     report.covariance = result.posterior.topLeftCorner<6, 6>();
     result.velocity = velocity_;

@@ -73,23 +73,9 @@ SurfaceSums totalOf(Iterator begin, Iterator end)
 
 void SurfaceSums::add(const SurfaceSums& other)
 {
-  equations.information += other.equations.information;
-  equations.noise_information += other.equations.noise_information;
-  equations.chance_information += other.equations.chance_information;
-  equations.coupling += other.equations.coupling;
-  equations.twist_information += other.equations.twist_information;
-  equations.gradient += other.equations.gradient;
-  equations.twist_gradient += other.equations.twist_gradient;
-  equations.cost += other.equations.cost;
-  equations.weight += other.equations.weight;
-  equations.squared_extent += other.equations.squared_extent;
-  squares += other.squares;
+  equations += other.equations;
   robust_weight += other.robust_weight;
   evidence += other.evidence;
-  planes += other.planes;
-  lines += other.lines;
-  points += other.points;
-  fits += other.fits;
 }
 
 SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
@@ -162,7 +148,7 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
   addNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
-  ++sums.planes;
+  ++sums.equations.planes;
 }
 
 /// Eq. 5 and 13: the distance across the line, in two directions.
@@ -181,7 +167,7 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double count = std::max(1.0, static_cast<double>(line.count));
   const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
   addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
-  ++sums.lines;
+  ++sums.equations.edges;
 }
 
 /// The distance to the nearest point, as far as it is felt.
@@ -194,7 +180,7 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
   const double told = open.dot(near.felt * open);
   const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, told, sums);
-  ++sums.points;
+  ++sums.equations.points;
   rows.add(near.felt, r, p.arm, w, p.since_middle);
   addNoise(w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count))), p.arm,
            sums.equations.chance_information);
@@ -217,10 +203,10 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
   sums.equations.cost += 0.5 * robust * squared / variance;
   sums.equations.weight += robust / variance;
   sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
-  sums.squares += robust * squared;
+  sums.equations.weighted_squares += robust * squared;
   sums.robust_weight += robust;
   const bool fits = squared < kFits * kFits * variance;
-  sums.fits += fits ? 1 : 0;
+  sums.equations.plane_inliers += fits ? 1 : 0;
   if (weighs_evidence) {
     const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
     sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;

@@ -20,15 +20,12 @@ struct PlacedPoint {
   double since_middle = 0.0;                        ///< in periods: so much of a change of the velocity moves it, too
 };
 
-/// H, b (Eq. 10 to 14) and what the report tells, of some of the residuals. The twist of the equations is the velocity.
+/// What some of the residuals come to: the twist of the equations is the velocity, their squares are counted by the
+/// robust weights alone, and lines are edges.
 struct SurfaceSums {
   NormalEquations equations;
-  double squares = 0.0;
   double robust_weight = 0.0;
   double evidence = 0.0;
-  int planes = 0, lines = 0, points = 0, fits = 0;
-
-  [[nodiscard]] int count() const { return planes + lines + points; }
 
   void add(const SurfaceSums& other);
 };

@@ -67,8 +67,8 @@ struct CloudIteration {
 struct CloudRegistrationRun {
   SE3 guess;  ///< target_T_source
   int threads = 1;
-  /// On the full clouds, >= 1. Thinned clouds are registered first, unless the guess is close already or so few
-  /// iterations are asked for that it is them that matter (below 4).
+  /// On the full clouds, >= 1. Thinned clouds are registered first, unless so few iterations are asked for that it is
+  /// them that matter (below 4).
   int max_iterations = 30;
   bool coarse_first = true;                                       ///< false: the guess is known to be close
   double max_distance = std::numeric_limits<double>::infinity();  ///< m; matches are no farther apart
@@ -96,8 +96,8 @@ struct CloudRegistrationRun {
 [[nodiscard]] RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,
                                                 const CloudRegistrationRun& run);
 
-/// Where a registration by other means should start: the guess if it is close, else what registering thinned clouds
-/// comes to, if that is nearer the target than the guess. Takes a few milliseconds.
+/// Where a registration by other means should start: at what registering thinned clouds comes to, or at the guess if
+/// surfaces are closer there. Takes a few milliseconds.
 [[nodiscard]] SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target,
                                const CloudRegistrationRun& run);
 

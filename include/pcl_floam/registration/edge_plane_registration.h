@@ -56,7 +56,7 @@ public:
 ///
 /// Should scans have too few features in common, all their points are tried, too.
 ///
-/// Either starts with thinned clouds if the guess is not close, unless fewer than 4 iterations are asked for.
+/// Either starts with thinned clouds, unless fewer than 4 iterations are asked for.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
 /// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.
