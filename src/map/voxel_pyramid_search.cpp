@@ -3,7 +3,6 @@
 #include "map/voxel_pyramid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace pcl_floam {
@@ -80,22 +79,9 @@ Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t lase
   return surface;
 }
 
-/// Far along a wall the columns in which a head fires lie as far apart as cells are wide. Each is a line then, of many
-/// lasers, that moves with the sensor; seen with the next ones it is part of a plane.
-bool VoxelPyramid::isPartOfPlane(const Fit& line, std::uint32_t parent) const
-{
-  constexpr float kAlong = 0.2F;  // sine of the angle between a plane and what lies in it
-  if (parent == 0) {
-    return false;
-  }
-  CellFit own;
-  const Fit around = fitOf(parent, own);
-  const Eigen::Vector3f normal(around.shape.direction.data());
-  return around.kind == SurfaceKind::plane &&
-         std::abs(normal.dot(Eigen::Vector3f(line.shape.direction.data()))) < kAlong;
-}
-
-/// A line of edge features is seen by three lasers; that is support enough.
+/// A line of edge features is seen by three lasers; that is support enough. Among all points a head's columns look like
+/// lines, where they lie as far apart as cells are wide, and move with the sensor: those of the latest keyframe are
+/// none.
 void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
   CellFit own;
@@ -106,8 +92,9 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
       continue;
     }
     const Fit fit = fitOf(found.cell, own);
-    const bool is_chosen = shapes_ == SurfaceShapes::lines || fit.kind != SurfaceKind::line;
-    if (fit.kind != SurfaceKind::unknown && (is_chosen || !isPartOfPlane(fit, cell.parent))) {
+    const bool is_pattern =
+        shapes_ != SurfaceShapes::lines && fit.kind == SurfaceKind::line && cell.support.isAllOf(keyframe_);
+    if (fit.kind != SurfaceKind::unknown && !is_pattern) {
       surfaceIn(found, place, fit, surface);
       return;
     }
