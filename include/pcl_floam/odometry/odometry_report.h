@@ -62,11 +62,11 @@ struct OdometryReport {
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
   double explained = 0.0;
-  /// How well the scan, and by surfaces a hint of its motion, tell where the sensor is, whatever was expected: one
-  /// standard deviation along the direction of which they tell least, m; a kilometre where nothing does, as of a pose
-  /// that is predicted; 0 for the first scan, whose pose is given. `doubtful` until two scans in a row together tell to
-  /// 1.2 cm, and again from one on that tells to no more than 5 cm, after a gap of ten periods, and where a pose was
-  /// set.
+  /// How well the scan, and by surfaces a hint of its motion, tell where the sensor is, whatever was expected, and by
+  /// surfaces less what noise would tell: one standard deviation along the direction of which they tell least, m; a
+  /// kilometre where nothing does, as of a pose that is predicted; 0 for the first scan, whose pose is given.
+  /// `doubtful` until two scans in a row together tell to 1.2 cm, and again from one on that tells to no more than 5
+  /// cm, after a gap of ten periods, and where a pose was set.
   double told_deviation = 0.0;
   /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
   /// registration may be off against the map; along directions that the scans said nothing of (weak ones, by surfaces;
