@@ -79,9 +79,19 @@ Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t lase
   return surface;
 }
 
-/// A line of edge features is seen by three lasers; that is support enough. Among all points a head's columns look like
-/// lines, where they lie as far apart as cells are wide, and move with the sensor: those of the latest keyframe are
-/// none.
+/// Where a head's columns lie as far apart as cells are wide, each looks like a line, and moves with the sensor. So a
+/// line of the latest keyframe alone is one only if it stands alone.
+bool VoxelPyramid::isPattern(const VoxelCells::Cell& line) const
+{
+  if (shapes_ == SurfaceShapes::lines || line.parent == 0 || !line.support.isAllOf(keyframe_)) {
+    return false;
+  }
+  CellFit own;
+  const SurfaceKind around = fitOf(line.parent, own).kind;
+  return around == SurfaceKind::plane || around == SurfaceKind::point;
+}
+
+/// A line of edge features is seen by three lasers; that is support enough.
 void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
   CellFit own;
@@ -92,8 +102,7 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
       continue;
     }
     const Fit fit = fitOf(found.cell, own);
-    const bool is_pattern =
-        shapes_ != SurfaceShapes::lines && fit.kind == SurfaceKind::line && cell.support.isAllOf(keyframe_);
+    const bool is_pattern = fit.kind == SurfaceKind::line && isPattern(cell);
     if (fit.kind != SurfaceKind::unknown && !is_pattern) {
       surfaceIn(found, place, fit, surface);
       return;

@@ -7,7 +7,8 @@ namespace pcl_floam {
 bool Rest::Scatter::isFar(const Eigen::Vector3d& from_mean, int poses) const
 {
   constexpr double kFar = 3.0;
-  return poses > 1 && from_mean.squaredNorm() * (poses - 1) > kFar * kFar * squares_;
+  constexpr double kRounding = 1e-9;  // m or rad: poses that are all alike are so but for this
+  return poses > 1 && from_mean.squaredNorm() * (poses - 1) > kFar * kFar * squares_ + kRounding * kRounding * poses;
 }
 
 void Rest::Scatter::add(const Eigen::Vector3d& step)
@@ -22,15 +23,18 @@ void Rest::Scatter::add(const Eigen::Vector3d& step)
 bool Rest::Scatter::isNoise() const
 {
   constexpr double kUndone = 0.1;
-  return products_ <= -kUndone * squares_;
+  constexpr double kRounding = 1e-16;  // m^2 or rad^2
+  return products_ <= kRounding - kUndone * squares_;
 }
 
 void Rest::take(const SE3& pose)
 {
   constexpr int kFewest = 10;  // poses: noise of fewer looks like motion, and slow motion like noise
+  constexpr int kMost = 20;    // poses: the sensor may have come to rest among them
   const Eigen::Vector3d from_mean = pose.translation - mean_.translation;
   const Eigen::Vector3d turned = logSO3(pose.rotation * mean_.rotation.transpose());
-  if (poses_ == 0 || position_.isFar(from_mean, poses_) || rotation_.isFar(turned, poses_)) {
+  const bool begins_again = !is_at_rest_ && poses_ == kMost;
+  if (poses_ == 0 || begins_again || position_.isFar(from_mean, poses_) || rotation_.isFar(turned, poses_)) {
     *this = Rest();
     poses_ = 1;
     mean_ = last_ = pose;

@@ -73,6 +73,7 @@ struct FeatureOdometry : OdometryRun {
 
   void setPose(const SE3& world_T_sensor)
   {
+    rest = Rest();
     hint.placeNext();
     if (!started || first) {
       initial_pose = world_T_sensor;
@@ -87,7 +88,6 @@ struct FeatureOdometry : OdometryRun {
   {
     motion = MotionEstimate(world_T_sensor);
     told_motion.forget();
-    rest = Rest();
     pose = {world_T_sensor};
     periods = periods_error = 0.0;
     is_placed = false;

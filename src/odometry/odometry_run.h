@@ -35,7 +35,7 @@ struct OdometryRun {
   PendingHint hint;
   ToldMotion told_motion;
   Rest rest;
-  int poses_given = 0;               ///< of scans that were registered
+  bool rests_since_first = false;    ///< among its poses is the first scan's
   double sweep_fraction = 0.0;       ///< of the last scan that told of it
   double periods = 0.0;              ///< since the last scan that was registered ...
   double periods_error = 0.0;        ///< ... and how far off that may be
@@ -93,7 +93,7 @@ struct OdometryRun {
   /// as it is known that it did, but for the first scan's, which is given.
   void noteRest()
   {
-    if (report.state == TrackingState::predicted || report.state == TrackingState::not_started) {
+    if (report.state != TrackingState::tracked && report.state != TrackingState::initialized) {
       rest = Rest();
       return;
     }
@@ -101,18 +101,18 @@ struct OdometryRun {
     if (!corrected.empty()) {
       rest = Rest();
       std::for_each(corrected.begin(), corrected.end(), [&](const SE3& pose) { rest.take(pose); });
-      poses_given = static_cast<int>(corrected.size());
+      rests_since_first = rest.poses() == static_cast<int>(corrected.size());
     }
     const bool was_known = rest.isAtRest() && corrected.empty();
     rest.take(report.world_T_sensor);
-    ++poses_given;
+    rests_since_first = report.state == TrackingState::initialized || (rests_since_first && rest.poses() > 1);
     report.at_rest = rest.isAtRest();
     if (!report.at_rest) {
       return;
     }
     report.world_T_sensor = rest.pose();
     if (!was_known) {
-      const auto before = static_cast<std::size_t>(rest.poses() < poses_given ? rest.poses() - 1 : rest.poses() - 2);
+      const auto before = static_cast<std::size_t>(rest.poses() - (rests_since_first ? 2 : 1));
       corrected.resize(std::max(before, corrected.size()));
       std::fill_n(corrected.rbegin(), before, rest.pose());
     }

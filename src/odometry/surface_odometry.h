@@ -269,6 +269,7 @@ struct SurfaceOdometry : OdometryRun {
 
   void setPose(const SE3& world_T_sensor)
   {
+    rest = Rest();
     hint.placeNext();
     if (!tracker.isTracking()) {
       initial_pose = world_T_sensor;
@@ -284,7 +285,6 @@ struct SurfaceOdometry : OdometryRun {
     }
     tracker.place(world_T_track.inverse() * world_T_sensor);
     told_motion.forget();
-    rest = Rest();
     first_scans.close();
     periods = periods_error = 0.0;
   }

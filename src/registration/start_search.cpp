@@ -42,7 +42,7 @@ double costAt(const SE3& pose, const CloudPyramid& source, const CloudPyramid& t
 {
   LevelAlignment level(source.full(), target.full(), run, false, kAlongSurfaces);
   const NormalEquations sums = level.evaluate(pose, [&](const SE3& p) { return alignment.toFrames(p); });
-  return sums.count() > 0 ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
+  return sums.count() >= run.min_correspondences ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
@@ -67,8 +67,10 @@ void findStart(const CloudPyramid& source, const CloudPyramid& target, const Clo
   double least = costAt(guess, source, target, run, alignment);
   const auto propose = [&] {
     const double cost = costAt(alignment.pose(), source, target, run, alignment);
-    best = cost <= least ? alignment.pose() : best;
-    least = std::min(cost, least);
+    if (cost < least) {
+      best = alignment.pose();
+      least = cost;
+    }
   };
   drawSurfaces();
   propose();

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -54,6 +55,25 @@ TEST(Rest, StandsWhereItsPosesAreInTheMean)
     const SE3 off = standing(0).inverse() * rest.pose();
     EXPECT_LT(off.translation.norm(), 0.25 * noise);
     EXPECT_LT(rotationAngle(off.rotation), 0.25 * noise);
+  }
+}
+
+TEST(Rest, PosesThatAreAllAlikeAreAtRest)
+{
+  EXPECT_GT(scansAtRest(standing, 0.0, 0), 85);
+}
+
+TEST(Rest, IsFoundAfterTheSensorHasBraked)
+{
+  constexpr int kStops = 30;
+  for (const double speed : {5.0, 50.0, 500.0}) {  // noises a scan, at first
+    const Path braking = [speed](int scan) {
+      const double left = std::max(0, kStops - scan);
+      return SE3(Eigen::Matrix3d::Identity(), {-0.5 * speed * kNoise * left * left / kStops, 0.0, 0.0});
+    };
+    for (std::uint32_t seed = 0; seed < 20; ++seed) {
+      EXPECT_GT(scansAtRest(braking, kNoise, seed), 20) << speed << ' ' << seed;
+    }
   }
 }
 

@@ -56,8 +56,10 @@ struct OdometryReport {
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
   /// was missing, and where the sensor has come to rest; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
-  /// The sensor stands still, as far as its poses tell: ten or more of them differ by noise alone. `world_T_sensor` is
-  /// then their mean, and those since it came to rest are corrected to it once.
+  /// The sensor stands still, as far as poses that are `tracked` tell: ten of them differed by noise alone, and none
+  /// has been far from their mean since (three times the usual step). `world_T_sensor` is that mean, and those since it
+  /// came to rest are corrected to it once. What moves by less than the noise from scan to scan is taken for rest until
+  /// it has led out of it.
   bool at_rest = false;
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
