@@ -81,7 +81,6 @@ private:
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
   bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
   Fit fitOf(std::uint32_t cell, CellFit& own) const;
-  [[nodiscard]] bool isPattern(const VoxelCells::Cell& line) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
   void surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const;
   [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const std::array<float, 9>& axes) const;

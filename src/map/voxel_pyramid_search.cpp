@@ -79,19 +79,8 @@ Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t lase
   return surface;
 }
 
-/// Where a head's columns lie as far apart as cells are wide, each looks like a line, and moves with the sensor. So a
-/// line of the latest keyframe alone is one only if it stands alone.
-bool VoxelPyramid::isPattern(const VoxelCells::Cell& line) const
-{
-  if (shapes_ == SurfaceShapes::lines || line.parent == 0 || !line.support.isAllOf(keyframe_)) {
-    return false;
-  }
-  CellFit own;
-  const SurfaceKind around = fitOf(line.parent, own).kind;
-  return around == SurfaceKind::plane || around == SurfaceKind::point;
-}
-
-/// A line of edge features is seen by three lasers; that is support enough.
+/// A line of edge features is seen by three lasers; that is support enough. Among all points a head's columns look like
+/// lines where they lie as far apart as cells are wide, and move with the sensor.
 void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
   CellFit own;
@@ -102,9 +91,10 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
       continue;
     }
     const Fit fit = fitOf(found.cell, own);
-    const bool is_pattern = fit.kind == SurfaceKind::line && isPattern(cell);
-    if (fit.kind != SurfaceKind::unknown && !is_pattern) {
+    if (fit.kind != SurfaceKind::unknown) {
       surfaceIn(found, place, fit, surface);
+      surface.may_be_pattern =
+          shapes_ != SurfaceShapes::lines && fit.kind == SurfaceKind::line && cell.support.isAllOf(keyframe_);
       return;
     }
   }

@@ -2,11 +2,10 @@
 
 namespace pcl_floam {
 
-/// In root mean square steps: of white noise about one pose in ten thousand is farther from the mean (four standard
-/// deviations), a steady motion is so from the seventh pose on.
+/// In root mean square steps: noise hardly ever is so far from the mean, a steady motion from the eighth pose on.
 bool Rest::Scatter::isFar(const Eigen::Vector3d& from_mean, int poses) const
 {
-  constexpr double kFar = 3.0;
+  constexpr double kFar = 4.0;
   constexpr double kRounding = 1e-9;  // m or rad: poses that are all alike are so but for this
   return poses > 1 && from_mean.squaredNorm() * (poses - 1) > kFar * kFar * squares_ + kRounding * kRounding * poses;
 }
@@ -30,7 +29,7 @@ bool Rest::Scatter::isNoise() const
 void Rest::take(const SE3& pose)
 {
   constexpr int kFewest = 10;  // poses: noise of fewer looks like motion, and slow motion like noise
-  constexpr int kMost = 20;    // poses: the sensor may have come to rest among them
+  constexpr int kMost = 40;    // poses: the sensor may have come to rest among them
   const Eigen::Vector3d from_mean = pose.translation - mean_.translation;
   const Eigen::Vector3d turned = logSO3(pose.rotation * mean_.rotation.transpose());
   const bool begins_again = !is_at_rest_ && poses_ == kMost;

@@ -167,6 +167,13 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double count = std::max(1.0, static_cast<double>(line.count));
   const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
   addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
+  if (line.may_be_pattern) {
+    for (const Eigen::Vector3d& direction : {first, Eigen::Vector3d(line.direction.cross(first))}) {
+      Eigen::Matrix<double, 6, 1> row;
+      row << direction, p.arm.cross(direction);
+      sums.equations.chance_information += w * row * row.transpose();
+    }
+  }
   ++sums.equations.edges;
 }
 

@@ -173,7 +173,6 @@ TEST(VoxelPyramid, FindsALineThatThreeLasersSee)
     for (int i = 0; i < 40; ++i) {
       map.insert({0.25, 0.25, 0.115 * i}, static_cast<std::uint32_t>(i) % lasers);
     }
-    map.beginKeyframe();
     return map.surfaceAt({0.3, 0.25, 0.25}, kStranger);
   };
   const Surface line = pole(3);
@@ -183,20 +182,21 @@ TEST(VoxelPyramid, FindsALineThatThreeLasersSee)
 }
 
 /// A head fires column by column. Far along a wall these lie as far apart as cells are wide, and move with the sensor.
-TEST(VoxelPyramid, ALineIsNoneBeforeTheSensorHasMoved)
+TEST(VoxelPyramid, ALineMayBeThePatternUntilTheSensorHasMoved)
 {
   VoxelPyramid map(kSide);
-  const Eigen::Vector3d on_column(0.3, 0.25, 0.25);
-  const auto kindThere = [&] { return map.surfaceAt(on_column, kStranger).kind; };
+  const auto there = [&] { return map.surfaceAt({0.3, 0.25, 0.25}, kStranger); };
   map.beginKeyframe();
   for (int i = 0; i < 40; ++i) {
     map.insert({0.25, 0.25, 0.115 * i}, static_cast<std::uint32_t>(i) % 3);
   }
-  EXPECT_NE(kindThere(), SurfaceKind::line);
+  ASSERT_EQ(there().kind, SurfaceKind::line);
+  EXPECT_TRUE(there().may_be_pattern);
   map.beginKeyframe();
-  EXPECT_EQ(kindThere(), SurfaceKind::line);
+  EXPECT_FALSE(there().may_be_pattern);
   map.insert({0.25, 0.25, 0.06}, 5);
-  EXPECT_EQ(kindThere(), SurfaceKind::line) << "an earlier keyframe has drawn it, too";
+  ASSERT_EQ(there().kind, SurfaceKind::line);
+  EXPECT_FALSE(there().may_be_pattern) << "an earlier keyframe has drawn it, too";
 }
 
 TEST(VoxelPyramid, GivesTheNearestPointOfWhatIsNeitherLineNorPlane)

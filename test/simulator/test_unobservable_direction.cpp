@@ -72,32 +72,4 @@ TEST(UnobservableDirection, IsLeftToAHint)
   EXPECT_LT(farthest, 4.0 * kWheels * std::sqrt(static_cast<double>(kTunnelScans)));
 }
 
-/// Between doors that are far apart noise, and the columns in which the head fires, would have it that a sensor which
-/// sets off still stands.
-TEST(UnobservableDirection, IsToldBetweenDoors)
-{
-  constexpr std::size_t kCorridorScans = 36;
-  constexpr double kAllowed = 0.5;  // m
-  SimulationOptions options;
-  options.family = Family::test;
-  options.world = "corridor";
-  options.sensor = "os64";
-  options.seed = 14;
-  Simulation simulation(options);
-  Odometry<PointXYZIRT> odometry;
-  SE3 before;  // at the last scan that was doubted, as estimated
-  SE3 at_last;
-  for (std::size_t scan = 0; scan < kCorridorScans; ++scan) {
-    const Sweep sweep = simulation.sweep(scan);
-    const OdometryReport& report = odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
-    if (scan == 0 || report.state == TrackingState::doubtful) {
-      before = report.world_T_sensor;
-      at_last = sweep.world_T_end;
-    }
-    const SE3 moved = before.inverse() * report.world_T_sensor;
-    const SE3 truly = at_last.inverse() * sweep.world_T_end;
-    EXPECT_LT((moved.translation - truly.translation).norm(), kAllowed) << scan;
-  }
-}
-
 }  // namespace pcl_floam::simulator
