@@ -23,7 +23,8 @@ try {
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
     std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
               << report.world_T_sensor.translation.transpose() << '\n';
-    // After a start among traffic the poses so far may turn out to be wrong: here are those just before this one.
+    // After a start among traffic, and where the sensor has come to rest, poses are known better later: here are those
+    // just before this one.
     const std::vector<pcl_floam::SE3>& corrected = report.corrected_poses;
     std::copy(corrected.begin(), corrected.end(), std::prev(trajectory.end(), static_cast<long>(corrected.size())));
     trajectory.push_back(report.world_T_sensor);
