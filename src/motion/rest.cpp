@@ -29,7 +29,7 @@ bool Rest::Scatter::isNoise() const
 void Rest::take(const SE3& pose)
 {
   constexpr int kFewest = 10;  // poses: noise of fewer looks like motion, and slow motion like noise
-  constexpr int kMost = 40;    // poses: the sensor may have come to rest among them
+  constexpr int kMost = 20;    // poses: the sensor may have come to rest among them
   const Eigen::Vector3d from_mean = pose.translation - mean_.translation;
   const Eigen::Vector3d turned = logSO3(pose.rotation * mean_.rotation.transpose());
   const bool begins_again = !is_at_rest_ && poses_ == kMost;

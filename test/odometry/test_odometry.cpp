@@ -53,7 +53,7 @@ TEST(Odometry, RecoversAnAcceleratedMotion)
 TEST(Odometry, StandsStillWhereTheSensorDoes)
 {
   constexpr int kStops = 6;
-  constexpr int kStarts = 30;
+  constexpr int kStarts = 45;
   const Path path = [](double t) {
     constexpr double kSlow = 0.2;
     return steadyPath(kSlow * (t < kStops ? t : std::max(double{kStops}, t + kStops - kStarts)));
@@ -71,7 +71,7 @@ TEST(Odometry, StandsStillWhereTheSensorDoes)
     std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
               poses.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
     poses.push_back(report.world_T_sensor);
-    EXPECT_LT(error(poses.back(), path, k), 0.03) << k;
+    EXPECT_LT(error(poses.back(), path, k), 0.05) << k;
     EXPECT_FALSE(report.at_rest && (k < kStops || k > kStarts)) << k;
     EXPECT_TRUE(report.at_rest || k != kStarts - 1);
   }
