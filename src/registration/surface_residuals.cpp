@@ -167,7 +167,7 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double count = std::max(1.0, static_cast<double>(line.count));
   const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
   addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
-  if (line.may_be_pattern) {
+  if (line.may_be_pattern) {  // all that it adds to H may be chance
     for (const Eigen::Vector3d& direction : {first, Eigen::Vector3d(line.direction.cross(first))}) {
       Eigen::Matrix<double, 6, 1> row;
       row << direction, p.arm.cross(direction);

@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -43,22 +42,20 @@ TEST_P(OpenRoadOdometry, IsFollowed)
   Simulation simulation(options);
   OdometryParameters parameters;
   Odometry<PointXYZIRT> odometry(parameters);
-  std::vector<SE3> truth;
-  std::vector<SE3> estimate;
+  SE3 last_truth;
+  SE3 last_estimate;
+  double way = 0.0;
+  double error = 0.0;
   for (std::size_t number = 0; number < kScans; ++number) {
     const Sweep sweep = simulation.sweep(number);
     const OdometryReport& report = odometry.track(sweep.cloud, 0.1 * static_cast<double>(number));
-    std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
-              estimate.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
-    estimate.push_back(report.world_T_sensor);
-    truth.push_back(sweep.world_T_end);
-  }
-  double way = 0.0;
-  double error = 0.0;
-  for (std::size_t number = kSettled + 1; number < kScans; ++number) {
-    const SE3 step = truth[number - 1].inverse() * truth[number];
-    way += step.translation.norm();
-    error += (estimate[number - 1].inverse() * estimate[number] * step.inverse()).translation.norm();
+    if (number > kSettled) {
+      const SE3 step = last_truth.inverse() * sweep.world_T_end;
+      way += step.translation.norm();
+      error += (last_estimate.inverse() * report.world_T_sensor * step.inverse()).translation.norm();
+    }
+    last_truth = sweep.world_T_end;
+    last_estimate = report.world_T_sensor;
   }
   EXPECT_GT(way, 10.0);
   // A standard deviation of some centimetres each scan; a road that is lost is off by all of the way.
