@@ -58,6 +58,7 @@ void ReturnReader::readLine(ReturnBatch& batch)
   const std::int32_t* index = lines.index.data();
   std::size_t count = 0;
   for (std::size_t place = place_; place < end; ++place) {
+    batch.place[count] = static_cast<std::int32_t>(place);
     count += take(cloud, limits, static_cast<std::size_t>(index[place]), count, batch);
   }
   place_ = end;
@@ -72,6 +73,7 @@ void ReturnReader::readCloud(ReturnBatch& batch)
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
       batch.laser[batch.count] = static_cast<std::uint32_t>(place_);
+      batch.place[batch.count] = -1;
       batch.count += take(returns_.cloud, limits_, place_, batch.count, batch);
     }
   }

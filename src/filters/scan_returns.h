@@ -18,9 +18,13 @@ struct ReturnBatch {
   std::size_t count = 0;
   std::array<float, kMost> x, y, z;        ///< m, corrected
   std::array<std::int32_t, kMost> index;   ///< in the cloud
+  std::array<std::int32_t, kMost> place;   ///< as \ref ScanPoint has it
   std::array<std::uint32_t, kMost> laser;  ///< as \ref ScanPoint has it
 
-  [[nodiscard]] ScanPoint point(std::size_t n) const { return {x[n], y[n], z[n], 0.5F, laser[n], index[n]}; }
+  [[nodiscard]] ScanPoint point(std::size_t n) const
+  {
+    return {x[n], y[n], z[n], 0.5F, laser[n], index[n], place[n], {}};
+  }
 };
 
 /// Squares of the distances between which returns count, m^2.

@@ -36,12 +36,6 @@ public:
     return areTwo(older_) || areTwo(others) || (older_ != 0 && others != 0);
   }
 
-  /// Whether no earlier keyframe than the map's latest has drawn anything.
-  [[nodiscard]] bool isAllOf(std::uint32_t latest_keyframe) const
-  {
-    return older_ == 0 && keyframe_ == latest_keyframe;
-  }
-
 private:
   static bool areTwo(std::uint64_t bits) { return (bits & (bits - 1)) != 0; }
   /// Another keyframe's curves of the same lasers get bits of their own, mostly: 21 and 64 have no common divisor.

@@ -79,8 +79,7 @@ Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t lase
   return surface;
 }
 
-/// A line of edge features is seen by three lasers; that is support enough. Among all points a head's columns look like
-/// lines where they lie as far apart as cells are wide, and move with the sensor.
+/// A line of edge features is seen by three lasers; that is support enough.
 void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
   CellFit own;
@@ -93,8 +92,6 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
     const Fit fit = fitOf(found.cell, own);
     if (fit.kind != SurfaceKind::unknown) {
       surfaceIn(found, place, fit, surface);
-      surface.may_be_pattern =
-          shapes_ != SurfaceShapes::lines && fit.kind == SurfaceKind::line && cell.support.isAllOf(keyframe_);
       return;
     }
   }

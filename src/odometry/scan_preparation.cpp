@@ -88,8 +88,8 @@ void PreparedScan::takeEdges(std::vector<ScanPoint>& edges) const
 {
   edges.clear();
   for (const Feature& edge : features.edges) {
-    edges.push_back(
-        {edge.x, edge.y, edge.z, timing.valid() ? edge.time : 0.5F, static_cast<std::uint32_t>(edge.line), edge.index});
+    const float time = timing.valid() ? edge.time : 0.5F;
+    edges.push_back({edge.x, edge.y, edge.z, time, static_cast<std::uint32_t>(edge.line), edge.index, -1, {}});
   }
 }
 

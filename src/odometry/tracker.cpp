@@ -43,26 +43,17 @@ void Tracker::place(const SE3& pose)
   }
 }
 
-void Tracker::sample(const std::vector<ScanPoint>& points, Sweep& sweep)
-{
-  if (settings_.side == 0.0) {
-    const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
-    settings_.side = sampling_.sideFor(points, static_cast<std::size_t>(cells));
-  }
-  dense_.sample(points, kMapSpacing * settings_.side, sweep.dense);
-  choosePoints(sweep);
-}
-
 void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
 {
   if (settings_.side == 0.0) {
     std::vector<ScanPoint> points;
     collectPoints(returns, points);
-    sample(points, sweep);
-    return;
+    const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
+    settings_.side = sampling_.sideFor(points, static_cast<std::size_t>(cells));
   }
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
   choosePoints(sweep);
+  findStraightRuns(returns, sweep.sample);
 }
 
 /// Which are registered of those that enter the map.

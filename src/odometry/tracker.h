@@ -30,7 +30,6 @@ public:
   };
 
   /// What is to be registered of all returns, and what enters the map.
-  void sample(const std::vector<ScanPoint>& points, Sweep& sweep);
   void sample(const ScanReturns& returns, Sweep& sweep);
 
   /// \param sweep \ref sample d; its periods are those since the last sweep that was registered

@@ -26,7 +26,7 @@ constexpr std::size_t kPlanesPerEdge = 6;
 /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
 /// weak: the guess is kept along them. What only the noise of the planes' normals seems to tell is taken off. Well
 /// constrained directions have 0.1 to 1, the way along a corridor with doors 0.001.
-constexpr double kWeak = 2e-4;
+constexpr double kWeakShare = 2e-4;
 
 /// At most so many of the features, evenly taken in their order.
 std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t most)
@@ -136,7 +136,7 @@ private:
 
   [[nodiscard]] InformationAnalysis analysis() const
   {
-    return InformationAnalysis(equations_, kWeak, freeMotions(problem_.parameters.locked));
+    return InformationAnalysis(equations_, kWeakShare, freeMotions(problem_.parameters.locked));
   }
 
   /// What else is known of the pose, as so many residuals of weight 1.
@@ -208,7 +208,7 @@ private:
     report_.information = equations_.information;
     report_.sweep_twist = trajectory_.twist();
     report_.covariance = analysis.covariance(featureVariance(equations_));
-    report_.weak_directions = analysis.weakDirections(kWeak);
+    report_.weak_directions = analysis.weakDirections(kWeakShare);
     return report_;
   }
 

@@ -45,6 +45,14 @@ void addNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
   }
 }
 
+/// How much of a residual counts along a run, of which the return may be any part: with the variance that is even over
+/// its length, beside that of other residuals.
+double feltAlongRun(double squared_run, double variance)
+{
+  constexpr double kEven = 12.0;
+  return std::sqrt(variance / (variance + squared_run / kEven));
+}
+
 void mirrorUpperHalf(Matrix6& m)
 {
   for (Eigen::Index row = 1; row < 6; ++row) {
@@ -114,6 +122,9 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
     p.since_middle = periods * MovingSensor::sinceMiddle(points[i * stride]);
     // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
     lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
+    if (!weighs_evidence) {
+      p.run = pose.rotation * Eigen::Vector3f::Map(points[i * stride].run.data()).cast<double>();
+    }
   }
   term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
@@ -154,26 +165,23 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
 /// Eq. 5 and 13: the distance across the line, in two directions.
 void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const
 {
+  const double variance = kRangeNoise * kRangeNoise + line.thickness;
   const Eigen::Vector3d from_center = p.place - line.center;
-  const Eigen::Vector3d across = from_center - line.direction * line.direction.dot(from_center);
-  const double length = across.norm();
-  const Eigen::Vector3d first =
-      length > 0.0 ? Eigen::Vector3d(across / length) : Eigen::Vector3d(line.direction.unitOrthogonal());
-  const double told = open.cross(line.direction).squaredNorm();
-  const double w = weight(length * length, kRangeNoise * kRangeNoise + line.thickness, first, p, told, sums);
-  rows.add(first, p.arm, length, w, p.since_middle);
-  rows.add(line.direction.cross(first), p.arm, 0.0, w, p.since_middle);
-  // Two points go into the line; its direction may be off to two sides.
-  const double count = std::max(1.0, static_cast<double>(line.count));
-  const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
-  addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
-  if (line.may_be_pattern) {  // all that it adds to H may be chance
-    for (const Eigen::Vector3d& direction : {first, Eigen::Vector3d(line.direction.cross(first))}) {
-      Eigen::Matrix<double, 6, 1> row;
-      row << direction, p.arm.cross(direction);
-      sums.equations.chance_information += w * row * row.transpose();
-    }
-  }
+  const Eigen::Vector3d run = p.run - line.direction * line.direction.dot(p.run);
+  const double squared_run = run.squaredNorm();
+  const bool has_run = squared_run > kNoExtent;
+  const Eigen::Vector3d other = has_run ? line.direction.cross(run).normalized() : line.direction.unitOrthogonal();
+  const Eigen::Vector3d along = feltAlongRun(squared_run, variance) * other.cross(line.direction);
+  const double first = other.dot(from_center);
+  const double second = along.dot(from_center);
+  const double squared = first * first + second * second;
+  const Eigen::Vector3d off =
+      squared > 0.0 ? Eigen::Vector3d((first * other + second * along) / std::sqrt(squared)) : other;
+  const double in_other = open.dot(other);
+  const double in_along = open.dot(along);
+  const double w = weight(squared, variance, off, p, in_other * in_other + in_along * in_along, sums);
+  rows.add(other, p.arm, first, w, p.since_middle);
+  rows.add(along, p.arm, second, w, p.since_middle);
   ++sums.equations.edges;
 }
 
@@ -182,13 +190,19 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 {
   // Over the root of a cell's points: how much seems felt along what they fill evenly.
   constexpr double kFeltByChance = 0.25;
-  const Eigen::Vector3d r = p.place - near.center;
+  const double variance = kRangeNoise * kRangeNoise + near.thickness;
+  const double squared_run = p.run.squaredNorm();
+  Eigen::Matrix3d seen = Eigen::Matrix3d::Identity();
+  if (squared_run > kNoExtent) {
+    seen -= (1.0 - feltAlongRun(squared_run, variance)) / squared_run * p.run * p.run.transpose();
+  }
+  const Eigen::Matrix3d felt = seen * near.felt * seen;
+  const Eigen::Vector3d r = seen * (p.place - near.center);
   const double length = r.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
-  const double told = open.dot(near.felt * open);
-  const double w = weight(length * length, kRangeNoise * kRangeNoise + near.thickness, direction, p, told, sums);
+  const double w = weight(length * length, variance, direction, p, open.dot(felt * open), sums);
   ++sums.equations.points;
-  rows.add(near.felt, r, p.arm, w, p.since_middle);
+  rows.add(felt, r, p.arm, w, p.since_middle);
   addNoise(w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count))), p.arm,
            sums.equations.chance_information);
 }

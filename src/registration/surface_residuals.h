@@ -17,6 +17,7 @@ class ResidualRows;
 struct PlacedPoint {
   Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
+  Eigen::Vector3d run = Eigen::Vector3d::Zero();    ///< \ref ScanPoint::run, in the target's axes
   double since_middle = 0.0;                        ///< in periods: so much of a change of the velocity moves it, too
 };
 

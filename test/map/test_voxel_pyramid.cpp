@@ -181,24 +181,6 @@ TEST(VoxelPyramid, FindsALineThatThreeLasersSee)
   EXPECT_NE(pole(2).kind, SurfaceKind::line);
 }
 
-/// A head fires column by column. Far along a wall these lie as far apart as cells are wide, and move with the sensor.
-TEST(VoxelPyramid, ALineMayBeThePatternUntilTheSensorHasMoved)
-{
-  VoxelPyramid map(kSide);
-  const auto there = [&] { return map.surfaceAt({0.3, 0.25, 0.25}, kStranger); };
-  map.beginKeyframe();
-  for (int i = 0; i < 40; ++i) {
-    map.insert({0.25, 0.25, 0.115 * i}, static_cast<std::uint32_t>(i) % 3);
-  }
-  ASSERT_EQ(there().kind, SurfaceKind::line);
-  EXPECT_TRUE(there().may_be_pattern);
-  map.beginKeyframe();
-  EXPECT_FALSE(there().may_be_pattern);
-  map.insert({0.25, 0.25, 0.06}, 5);
-  ASSERT_EQ(there().kind, SurfaceKind::line);
-  EXPECT_FALSE(there().may_be_pattern) << "an earlier keyframe has drawn it, too";
-}
-
 TEST(VoxelPyramid, GivesTheNearestPointOfWhatIsNeitherLineNorPlane)
 {
   VoxelPyramid map(kSide);

@@ -14,30 +14,26 @@ SE3 path(double t)
   return exp(Vector6(t * (Vector6() << 0.3, 0.02, 0.0, 0.0, 0.0, 0.03).finished()));
 }
 
-struct Prepared {
-  std::vector<ScanPoint> points;
-  std::vector<ScanPoint> edges;
-};
-
-Prepared prepared(int k)
+pcl::PointCloud<PointXYZIRT> scanOf(int k)
 {
-  const auto cloud = toCloud(sweepRoom(Room(), Lidar(), [k](double fraction) { return path(k + fraction); }));
-  PreparedScan scan;
-  scan.findStructure(viewOf(cloud), OdometryParameters(), 0.0);
-  scan.takePoints(viewOf(cloud), OdometryParameters());
-  scan.takeFeatures(viewOf(cloud), OdometryParameters());
-  std::vector<ScanPoint> edges;
-  scan.takeEdges(edges);
-  return {scan.points, edges};
+  return toCloud(sweepRoom(Room(), Lidar(), [k](double fraction) { return path(k + fraction); }));
 }
 
-/// Takes a scan as the odometry does.
-Tracker::Outcome step(Tracker& tracker, const Prepared& scan, double periods = 1.0)
+/// A scan as the odometry takes it.
+Sweep sweepOf(const pcl::PointCloud<PointXYZIRT>& cloud, Tracker& tracker)
 {
+  const CloudView view = viewOf(cloud);
+  PreparedScan scan;
+  scan.findStructure(view, OdometryParameters(), 0.0);
+  scan.takeFeatures(view, OdometryParameters());
   Sweep sweep;
-  tracker.sample(scan.points, sweep);
-  sweep.edges = scan.edges;
-  sweep.periods = periods;
+  tracker.sample(scan.returnsOf(view, OdometryParameters()), sweep);
+  scan.takeEdges(sweep.edges);
+  return sweep;
+}
+
+Tracker::Outcome step(Tracker& tracker, const Sweep& sweep)
+{
   const Tracker::Outcome outcome = tracker.step(sweep);
   tracker.updateMap(sweep);
   return outcome;
@@ -55,8 +51,7 @@ TEST(Tracker, FollowsAMotionThatItFindsFromTwoSweeps)
 {
   Tracker tracker({});
   for (int k = 0; k < 8; ++k) {
-    const Prepared scan = prepared(k);
-    const Tracker::Outcome outcome = step(tracker, scan);
+    const Tracker::Outcome outcome = step(tracker, sweepOf(scanOf(k), tracker));
     EXPECT_EQ(outcome.registration.report.hasConverged(), k > 0);
     EXPECT_EQ(tracker.isTracking(), k > 0);
     if (k > 0) {
@@ -69,35 +64,33 @@ TEST(Tracker, ASweepThatFitsNothingChangesNothing)
 {
   Tracker tracker({});
   for (int k = 0; k < 4; ++k) {
-    const Prepared scan = prepared(k);
-    step(tracker, scan);
+    step(tracker, sweepOf(scanOf(k), tracker));
   }
   const SE3 before = tracker.track().pose().middle;
-  Prepared far_off{prepared(4).points, {}};
-  for (ScanPoint& point : far_off.points) {
-    point.x += 1000.0F;
+  Sweep far_off = sweepOf(scanOf(4), tracker);
+  far_off.edges.clear();
+  for (std::vector<ScanPoint>* points : {&far_off.dense, &far_off.sample}) {
+    for (ScanPoint& point : *points) {
+      point.x += 1000.0F;
+    }
   }
   EXPECT_FALSE(step(tracker, far_off).registration.report.hasConverged());
   EXPECT_EQ(tracker.track().pose().middle.translation, before.translation);
-  const Prepared scan = prepared(5);
-  EXPECT_TRUE(step(tracker, scan, 2.0).registration.report.hasConverged());
+  Sweep later = sweepOf(scanOf(5), tracker);
+  later.periods = 2.0;
+  EXPECT_TRUE(step(tracker, later).registration.report.hasConverged());
   EXPECT_LT(error(tracker.track().pose().middle, 5), 0.02);
 }
 
 TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
 {
-  SpatialSampling sampling;
   std::vector<Sweep> sweeps;
   std::vector<SE3> poses;
   TrackSettings settings;
+  settings.side = 0.2;
+  Tracker tracker(settings);
   for (int k = 0; k < 5; ++k) {
-    const Prepared scan = prepared(k);
-    settings.side = settings.side > 0.0 ? settings.side : sampling.sideFor(scan.points, 2000);
-    Sweep sweep;
-    sampling.sample(scan.points, 0.3 * settings.side, sweep.dense);
-    sampling.sample(sweep.dense, settings.side, sweep.sample);
-    sweep.edges = scan.edges;
-    sweeps.push_back(sweep);
+    sweeps.push_back(sweepOf(scanOf(k), tracker));
     poses.push_back(path(0.5).inverse() * path(k + 0.5));
   }
   const Sweep last = sweeps.back();

@@ -187,6 +187,54 @@ TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
   EXPECT_LT(report.covariance(2, 2), 1e-4);
 }
 
+/// A wall's returns, one column beside the next, look like posts that stand where the sensor drew them.
+class Columns : public SurfaceSearch {
+public:
+  explicit Columns(SurfaceKind kind) : kind_(kind) {}
+
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      surfaces[i].kind = kind_;
+      surfaces[i].center = {std::round(places[i].x()), 2.0, 0.0};
+      if (kind_ == SurfaceKind::line) {
+        surfaces[i].direction = Eigen::Vector3d::UnitZ();
+        surfaces[i].extent = 0.1;
+      }
+      surfaces[i].count = 20;
+    }
+  }
+
+private:
+  SurfaceKind kind_;
+};
+
+TEST(SurfaceRegistration, WhatLiesOnAStraightRunTellsNothingAlongIt)
+{
+  for (const SurfaceKind kind : {SurfaceKind::line, SurfaceKind::point}) {
+    const Columns target(kind);
+    std::vector<ScanPoint> points(400);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i].x = static_cast<float>(i % 20) - 10.0F;
+      points[i].y = 2.0F;
+      points[i].z = kind == SurfaceKind::line ? 0.1F * static_cast<float>(i / 20) : 0.0F;
+    }
+    SurfaceProblem problem = problemOf(points, target);
+    problem.locked = {false, false, true, true, true, true};
+    const Matrix6 of_posts = registerSurfaces(problem).report.information;
+    for (ScanPoint& point : points) {
+      point.run = {5.0F, 0.0F, 0.0F};
+    }
+    const Matrix6 of_wall = registerSurfaces(problem).report.information;
+    EXPECT_GT(of_posts(0, 0), 0.5 * of_posts(1, 1));
+    EXPECT_LT(of_wall(0, 0), 1e-3 * of_posts(0, 0));
+    EXPECT_NEAR(of_wall(1, 1), of_posts(1, 1), 1e-6 * of_posts(1, 1));
+  }
+}
+
 /// A laser that points a little elsewhere than it is said to misses a floor by the more the farther it is.
 TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
 {

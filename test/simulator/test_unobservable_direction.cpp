@@ -11,10 +11,11 @@
 #include <cstddef>
 #include <random>
 #include <string>
+#include <vector>
 
 namespace pcl_floam::simulator {
 
-/// In nearly all scans, once the map is more than the noise of a few.
+/// Once the map is more than the noise of a few scans no scan is called tracked, and most name the direction.
 TEST(UnobservableDirection, IsReported)
 {
   constexpr std::size_t kTunnelScans = 80;
@@ -29,9 +30,46 @@ TEST(UnobservableDirection, IsReported)
     const OdometryReport& report = odometry.track(simulation.sweep(scan).cloud, 0.1 * static_cast<double>(scan));
     const bool is_named = !report.registration.weak_directions.empty();
     named += is_named && scan >= kJudgedFrom ? 1 : 0;
+    EXPECT_TRUE(scan < kJudgedFrom || report.state == TrackingState::doubtful) << scan;
     EXPECT_TRUE(!is_named || report.registration.covariance.trace() > 1e-4) << scan;
   }
-  EXPECT_GT(named, (kTunnelScans - kJudgedFrom) * 9 / 10);
+  EXPECT_GT(named, (kTunnelScans - kJudgedFrom) * 4 / 5);
+}
+
+/// Far along its walls a dense lidar's columns lie as far apart as doors are wide, and move with the sensor: where ten
+/// scans in a row are called tracked, it has not moved off by half a metre.
+TEST(UnobservableDirection, IsNotHiddenByTheSensorsOwnColumns)
+{
+  constexpr double kSlip = 0.5;  // m
+  constexpr std::size_t kSecond = 10;
+  constexpr std::size_t kCorridorScans = 40;
+  for (const unsigned seed : {6U, 9U, 14U}) {
+    SimulationOptions options;
+    options.world = "corridor";
+    options.sensor = "os64";
+    options.family = Family::test;
+    options.seed = seed;
+    Simulation simulation(options);
+    OdometryParameters parameters;
+    parameters.pose_instant = PoseInstant::middle;
+    Odometry<PointXYZIRT> odometry(parameters);
+    std::vector<SE3> truth;
+    std::vector<SE3> tracked;  // without a doubt or a correction between them
+    for (std::size_t scan = 0; scan < kCorridorScans; ++scan) {
+      const Sweep sweep = simulation.sweep(scan);
+      const OdometryReport& report = odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
+      truth.push_back(sweep.world_T_middle);
+      if (report.state != TrackingState::tracked || !report.corrected_poses.empty()) {
+        tracked.clear();
+      }
+      tracked.push_back(odometry.pose());
+      if (tracked.size() > kSecond) {
+        const SE3 moved = tracked[tracked.size() - 1 - kSecond].inverse() * tracked.back();
+        const SE3 off = (truth[scan - kSecond].inverse() * truth[scan]).inverse() * moved;
+        EXPECT_LT(off.translation.norm(), kSlip) << "seed " << seed << ", scan " << scan;
+      }
+    }
+  }
 }
 
 /// Wheels that are 2 cm off in each period tell of the way along; the scans tell of the rest.

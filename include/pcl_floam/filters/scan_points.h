@@ -6,6 +6,7 @@
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -20,6 +21,10 @@ struct ScanPoint {
   float time = 0.5F;        ///< fraction of the sweep, in [0,1]
   std::uint32_t laser = 0;  ///< number of the scan line; without scan lines a number of its own
   std::int32_t index = -1;  ///< of the point in its cloud
+  std::int32_t place = -1;  ///< in the list of the scan lines (\ref ScanLines::index); -1: unknown
+  /// m: along its scan line, as long as the line goes on straight about the point; zero: unknown. See \ref
+  /// findStraightRuns.
+  std::array<float, 3> run = {};
 };
 
 /// All returns of a scan between two distances from the sensor, line after line; without scan lines in the cloud's
@@ -37,6 +42,12 @@ struct ScanReturns {
 
 /// \param[out] points overwritten; its memory is reused
 void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
+
+/// Finds how far each point's scan line goes on straight about it, up to three neighbours to both sides. On such a run a
+/// return may have come from anywhere: of the way along it a return tells as little as the run is long. A wall on which
+/// a lidar's columns lie far apart then does not look like a row of posts that move along with the sensor.
+/// \param[in,out] points of those returns; where \ref ScanPoint::place is unknown, the run stays so
+void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Takes points evenly by space: the first one in each cube. Fastest where samples that follow each other are about as
 /// large.

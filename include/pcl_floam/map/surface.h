@@ -29,9 +29,6 @@ struct Surface {
   double extent = 0.0;      ///< m^2: variance of its points along it, in the shorter direction of a plane
   std::uint32_t count = 0;  ///< of the points it was found from
   double size = 0.0;        ///< m: side of the neighbourhood it was found in
-  /// A line that only the latest keyframe has drawn: it may be a column of the sensor's own, and then says that the
-  /// sensor stands. It is followed, but tells nothing (`OdometryReport::told_deviation`).
-  bool may_be_pattern = false;
 };
 
 /// Where a registration looks for surfaces. One's own can be handed in, in place of a \ref KeyframeVoxelMap.

@@ -1,0 +1,88 @@
+// How far a scan line goes on straight about a return.
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/filters/scan_points.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace pcl_floam::test {
+namespace {
+
+constexpr double kStep = 0.2 * M_PI / 180.0;
+
+/// The lower of two scan lines over +-20 steps about the x axis, of what a function of the azimuth says is how far
+/// away.
+std::vector<ScanPoint> lineOf(const std::function<double(double)>& range)
+{
+  std::vector<Return> returns;
+  for (int ring = 0; ring < 2; ++ring) {
+    for (int i = -20; i <= 20; ++i) {
+      const double azimuth = i * kStep;
+      const double r = range(azimuth);
+      returns.push_back(
+          {{r * std::cos(azimuth), r * std::sin(azimuth), 0.1 * r * ring}, ring, i + 20, (i + 20) / 41.0});
+    }
+  }
+  const auto cloud = toCloud(returns);
+  const CloudView view = viewOf(cloud);
+  ScanLines lines;
+  findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
+  const ScanTiming timing = findScanTiming(view, lines);
+  const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
+  std::vector<ScanPoint> points;
+  collectPoints(all, points);
+  findStraightRuns(all, points);
+  return points;
+}
+
+Eigen::Vector3d runAt(const std::vector<ScanPoint>& points, std::size_t i)
+{
+  return Eigen::Vector3f::Map(points.at(i).run.data()).cast<double>();
+}
+
+TEST(StraightRuns, GoAlongAWallHoweverFarApartItsReturnsLie)
+{
+  // A wall at 30 degrees to the ray, and one at 3.
+  for (const double degrees : {30.0, 3.0}) {
+    const double angle = degrees * M_PI / 180.0;
+    const auto points = lineOf([&](double azimuth) { return 20.0 * std::sin(angle) / std::sin(angle + azimuth); });
+    const std::size_t middle = 20;
+    const Eigen::Vector3d ends(points[middle - 3].x - points[middle + 3].x, points[middle - 3].y - points[middle + 3].y,
+                               0.0);
+    const Eigen::Vector3d run = runAt(points, middle);
+    EXPECT_NEAR(run.norm(), ends.norm() * 7.0 / 6.0, 0.01 * ends.norm()) << degrees;
+    EXPECT_LT(run.cross(ends).norm(), 1e-4 * run.norm() * ends.norm()) << degrees;
+  }
+}
+
+TEST(StraightRuns, EndWhereAThingEnds)
+{
+  // A post three returns wide before a wall.
+  const auto points = lineOf([](double azimuth) { return std::abs(azimuth) < 1.5 * kStep ? 20.0 : 40.0; });
+  EXPECT_NEAR(runAt(points, 20).norm(), 20.0 * 3.0 * kStep, 0.01);
+  EXPECT_NEAR(runAt(points, 19).norm(), 20.0 * 3.0 * kStep, 0.01);
+  EXPECT_GT(runAt(points, 14).norm(), 40.0 * 4.0 * kStep);
+}
+
+TEST(StraightRuns, AReturnWithoutNeighboursOfItsOwnThingHasNone)
+{
+  const auto points = lineOf([](double azimuth) { return std::abs(azimuth) < 0.5 * kStep ? 20.0 : 40.0; });
+  EXPECT_EQ(runAt(points, 20).norm(), 0.0);
+}
+
+/// With the huge and the doubled, too: the search ends.
+TEST(StraightRuns, AreFiniteOfAnyReturns)
+{
+  for (const double range : {1e-3, 1.0, 1e10}) {
+    const auto points = lineOf([&](double azimuth) { return std::sin(1e3 * azimuth) > 0.0 ? range : 1e-3; });
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      EXPECT_TRUE(runAt(points, i).allFinite());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
