@@ -72,7 +72,7 @@ void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vect
   edges_.beginKeyframe();
   space_->insert(space.data(), lasers.data(), space.size());
   edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
-  space_->beginKeyframe();  // so that this is none of the latest keyframe's pattern
+  space_->beginKeyframe();  // what has numbers of its own is no laser's latest curve
 }
 
 }  // namespace pcl_floam

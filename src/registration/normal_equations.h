@@ -34,7 +34,7 @@ struct NormalEquations {
   /// The part of H that the noise of the planes' normals makes: sum w J^T J with J of the normals' tilts. Along a
   /// smooth corridor there is nothing else in H.
   Matrix6 noise_information = Matrix6::Zero();
-  /// What the chance of how few points lie makes besides.
+  /// What the noise of lines' directions and the chance of how few points lie make besides.
   Matrix6 chance_information = Matrix6::Zero();
   Matrix6 coupling = Matrix6::Zero();           ///< sum w s J^T J: of pose and twist
   Matrix6 twist_information = Matrix6::Zero();  ///< sum w s^2 J^T J

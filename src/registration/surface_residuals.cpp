@@ -120,7 +120,8 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
     p.arm = pose.rotation * places[i];
     p.place = places[i] = pose.translation + p.arm;
     p.since_middle = periods * MovingSensor::sinceMiddle(points[i * stride]);
-    // At rest a laser draws the same curve again: what is no information about the pose is evidence for it.
+    // At rest a laser draws the same curve again, place by place: what is no information about the pose is evidence
+    // for it.
     lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
     if (!weighs_evidence) {
       p.run = pose.rotation * Eigen::Vector3f::Map(points[i * stride].run.data()).cast<double>();
@@ -182,6 +183,10 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double w = weight(squared, variance, off, p, in_other * in_other + in_along * in_along, sums);
   rows.add(other, p.arm, first, w, p.since_middle);
   rows.add(along, p.arm, second, w, p.since_middle);
+  // Two points go into the line; its direction may be off to two sides.
+  const double count = std::max(1.0, static_cast<double>(line.count));
+  const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
+  addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
   ++sums.equations.edges;
 }
 
@@ -192,19 +197,31 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   constexpr double kFeltByChance = 0.25;
   const double variance = kRangeNoise * kRangeNoise + near.thickness;
   const double squared_run = p.run.squaredNorm();
-  Eigen::Matrix3d seen = Eigen::Matrix3d::Identity();
-  if (squared_run > kNoExtent) {
-    seen -= (1.0 - feltAlongRun(squared_run, variance)) / squared_run * p.run * p.run.transpose();
+  const Eigen::Vector3d off = p.place - near.center;
+  Eigen::Vector3d seen = off;
+  Eigen::Matrix3d felt = near.felt;
+  double told_of_run = 1.0;
+  if (squared_run > kNoExtent) {  // S off and S felt S with S = 1 - (1 - k) run run^T / |run|^2
+    const double k = feltAlongRun(squared_run, variance);
+    const double unfelt = (1.0 - k) / squared_run;
+    const Eigen::Vector3d along = unfelt * (felt * p.run);
+    felt -=
+        along * p.run.transpose() + p.run * along.transpose() - unfelt * along.dot(p.run) * p.run * p.run.transpose();
+    seen -= unfelt * p.run.dot(off) * p.run;
+    told_of_run = k * k;
   }
-  const Eigen::Matrix3d felt = seen * near.felt * seen;
-  const Eigen::Vector3d r = seen * (p.place - near.center);
-  const double length = r.norm();
-  const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(r / length) : Eigen::Vector3d::Zero();
+  const double length = seen.norm();
+  const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
   const double w = weight(length * length, variance, direction, p, open.dot(felt * open), sums);
   ++sums.equations.points;
-  rows.add(felt, r, p.arm, w, p.since_middle);
-  addNoise(w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count))), p.arm,
-           sums.equations.chance_information);
+  rows.add(felt, off, p.arm, w, p.since_middle);
+  const double chance = w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count)));
+  addNoise(chance, p.arm, sums.equations.chance_information);
+  if (told_of_run < 1.0) {  // what is not felt is not felt by chance
+    Eigen::Matrix<double, 6, 1> row;
+    row << p.run, p.arm.cross(p.run);
+    sums.equations.chance_information -= chance * (1.0 - told_of_run) / squared_run * row * row.transpose();
+  }
 }
 
 /// The kernel is as wide as the residual may be off with the pose.

@@ -66,6 +66,7 @@ protected:
     pcl_floam::Sweep sweep;
     sampling_.sample(scan.points, kMapSpacing * settings_.side, sweep.dense);
     sampling_.sample(sweep.dense, settings_.side, sweep.sample);
+    findStraightRuns(scan.returnsOf(view, {}), sweep.sample);
     scan.takeEdges(sweep.edges);
     sweep.fraction = scan.sweep_fraction;
     return sweep;

@@ -22,8 +22,8 @@ struct ScanPoint {
   std::uint32_t laser = 0;  ///< number of the scan line; without scan lines a number of its own
   std::int32_t index = -1;  ///< of the point in its cloud
   std::int32_t place = -1;  ///< in the list of the scan lines (\ref ScanLines::index); -1: unknown
-  /// m: along its scan line, as long as the line goes on straight about the point; zero: unknown. See \ref
-  /// findStraightRuns.
+  /// m: along its scan line, as long as the line goes on straight about the point; zero: it does not, or it is not
+  /// known. See \ref findStraightRuns.
   std::array<float, 3> run = {};
 };
 
@@ -43,10 +43,11 @@ struct ScanReturns {
 /// \param[out] points overwritten; its memory is reused
 void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
-/// Finds how far each point's scan line goes on straight about it, up to three neighbours to both sides. On such a run a
-/// return may have come from anywhere: of the way along it a return tells as little as the run is long. A wall on which
-/// a lidar's columns lie far apart then does not look like a row of posts that move along with the sensor.
-/// \param[in,out] points of those returns; where \ref ScanPoint::place is unknown, the run stays so
+/// Finds how far each point's scan line goes on straight about it, up to three neighbours to both sides and a step more.
+/// On such a run a return may have come from anywhere: of the way along it a return tells as little as the run is long.
+/// A wall on which a lidar's columns lie far apart then does not look like a row of posts that move along with the
+/// sensor. As measured: the sensor's turn from one neighbour to the next is neglected.
+/// \param[in,out] points of those returns; the others, of which laser, place and index do not agree, keep their runs
 void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Takes points evenly by space: the first one in each cube. Fastest where samples that follow each other are about as

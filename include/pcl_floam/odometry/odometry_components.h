@@ -25,7 +25,7 @@ struct OdometryComponents {
   KeyframeRule is_keyframe;
 
   /// Chooses the returns that are registered from those that may enter the map (engine `surfaces`). By default one of
-  /// each cell.
+  /// each cell. What is chosen keeps its laser, place and index; its run (\ref findStraightRuns) is found afterwards.
   /// \param[out] registered empty
   std::function<void(const std::vector<ScanPoint>& points, std::vector<ScanPoint>& registered)> select_points;
 
