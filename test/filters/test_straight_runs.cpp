@@ -12,6 +12,7 @@ namespace pcl_floam::test {
 namespace {
 
 constexpr double kStep = 0.2 * M_PI / 180.0;
+constexpr double kNothing = 0.0;  // m: no return
 
 /// The lower of two scan lines over +-20 steps about the x axis, of what a function of the azimuth says is how far
 /// away.
@@ -22,6 +23,9 @@ std::vector<ScanPoint> lineOf(const std::function<double(double)>& range)
     for (int i = -20; i <= 20; ++i) {
       const double azimuth = i * kStep;
       const double r = range(azimuth);
+      if (r == kNothing) {
+        continue;
+      }
       returns.push_back(
           {{r * std::cos(azimuth), r * std::sin(azimuth), 0.1 * r * ring}, ring, i + 20, (i + 20) / 41.0});
     }
@@ -45,8 +49,7 @@ Eigen::Vector3d runAt(const std::vector<ScanPoint>& points, std::size_t i)
 
 TEST(StraightRuns, GoAlongAWallHoweverFarApartItsReturnsLie)
 {
-  // A wall at 30 degrees to the ray, and one at 3.
-  for (const double degrees : {30.0, 3.0}) {
+  for (const double degrees : {30.0, 3.0, 1.5}) {  // between wall and ray
     const double angle = degrees * M_PI / 180.0;
     const auto points = lineOf([&](double azimuth) { return 20.0 * std::sin(angle) / std::sin(angle + azimuth); });
     const std::size_t middle = 20;
@@ -73,14 +76,54 @@ TEST(StraightRuns, AReturnWithoutNeighboursOfItsOwnThingHasNone)
   EXPECT_EQ(runAt(points, 20).norm(), 0.0);
 }
 
+TEST(StraightRuns, DoNotGoOnAcrossWhatIsMissing)
+{
+  // A post before the sky, and things far to both sides of it.
+  const auto points = lineOf([](double azimuth) {
+    return std::abs(azimuth) < 0.5 * kStep || std::abs(azimuth) > 10.0 * kStep ? 20.0 : kNothing;
+  });
+  ASSERT_LT(points.size(), 50U);
+  for (const ScanPoint& point : points) {
+    const bool is_post = std::abs(point.y) < 0.01;
+    EXPECT_EQ(Eigen::Vector3f::Map(point.run.data()).norm() == 0.0F, is_post) << point.y;
+  }
+}
+
 /// With the huge and the doubled, too: the search ends.
 TEST(StraightRuns, AreFiniteOfAnyReturns)
 {
-  for (const double range : {1e-3, 1.0, 1e10}) {
-    const auto points = lineOf([&](double azimuth) { return std::sin(1e3 * azimuth) > 0.0 ? range : 1e-3; });
+  for (const double range : {1e-3, 1.0, 1e10, 3e38}) {
+    const auto points = lineOf([&](double azimuth) { return std::sin(1e3 * azimuth) > 0.0 ? range : 1.0; });
+    ASSERT_FALSE(points.empty());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      EXPECT_TRUE(runAt(points, i).allFinite());
+      EXPECT_TRUE(runAt(points, i).allFinite()) << range;
     }
+  }
+}
+
+TEST(StraightRuns, OfPointsThatAreNotTheScansStayAsTheyAre)
+{
+  const auto cloud =
+      toCloud({{{5.0, 0.0, 0.0}, 0, 0, 0.0}, {{5.0, 0.1, 0.0}, 0, 1, 0.5}, {{5.0, 0.2, 0.0}, 0, 2, 1.0}});
+  const CloudView view = viewOf(cloud);
+  ScanLines lines;
+  lines.index = {0, 1, 2};
+  lines.begin = {0, 3};
+  const ScanTiming timing;
+  const ScanReturns returns{view, lines, timing, 0.1, 200.0, 0.0};
+  std::vector<ScanPoint> points(5);
+  for (ScanPoint& point : points) {
+    point.laser = 0;
+    point.place = point.index = 1;
+  }
+  points[1].laser = 0xFFFFFFFFU;
+  points[2].place = 3;
+  points[3].place = -1;
+  points[4].index = 2;
+  findStraightRuns(returns, points);
+  EXPECT_GT(runAt(points, 0).norm(), 0.1);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    EXPECT_EQ(runAt(points, i).norm(), 0.0) << i;
   }
 }
 
