@@ -11,7 +11,9 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr std::ptrdiff_t kAside = 3;  ///< neighbours to each side
+/// Neighbours to each side: where returns lie so close that six steps are less than they are off, a run does not
+/// matter.
+constexpr std::ptrdiff_t kAside = 3;
 /// A return of a straight run is off by up to so much, m: five standard deviations.
 constexpr float kStraight = 0.1F;
 /// Steps of one surface do not differ by more than this factor from one return to the next few.

@@ -45,8 +45,9 @@ void addNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
   }
 }
 
-/// How much of a residual counts along a run, of which the return may be any part: with the variance that is even over
-/// its length, beside that of other residuals.
+/// How much of a residual counts along a run. The return may be any place of it, so that its variance there is that of
+/// an even distribution, L^2 / 12, beside what it is elsewhere (no equation of the paper: it registers smooth points
+/// with planes alone).
 double feltAlongRun(double squared_run, double variance)
 {
   constexpr double kEven = 12.0;

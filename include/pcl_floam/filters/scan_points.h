@@ -46,8 +46,8 @@ void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 /// Finds how far each point's scan line goes on straight about it, up to three neighbours to both sides and a step
 /// more. On such a run a return may have come from anywhere: of the way along it a return tells as little as the run is
 /// long. A wall on which a lidar's columns lie far apart then does not look like a row of posts that move along with
-/// the sensor. As measured: the sensor's turn from one neighbour to the next is neglected. \param[in,out] points of
-/// those returns; the others, of which laser, place and index do not agree, keep their runs
+/// the sensor. As measured: the sensor's turn from one neighbour to the next is neglected.
+/// \param[in,out] points of those returns; others, of which laser, place and index do not agree, keep their runs
 void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Takes points evenly by space: the first one in each cube. Fastest where samples that follow each other are about as
