@@ -1,13 +1,22 @@
 #include "motion/rest.h"
 
+#include <cmath>
+
 namespace pcl_floam {
 
-/// In root mean square steps: noise hardly ever is so far from the mean, a steady motion from the eighth pose on.
+/// Noise of one direction leads so far from the mean once in an hour. A step has twice its variance, of which few steps
+/// tell little: Student's distribution, by the tail that is known in closed form, that of two directions.
 bool Rest::Scatter::isFar(const Eigen::Vector3d& from_mean, int poses) const
 {
-  constexpr double kFar = 4.0;
-  constexpr double kRounding = 1e-9;  // m or rad: poses that are all alike are so but for this
-  return poses > 1 && from_mean.squaredNorm() * (poses - 1) > kFar * kFar * squares_ + kRounding * kRounding * poses;
+  constexpr double kScans = 36000.0;   // in an hour, at 10 Hz
+  constexpr double kRounding = 1e-18;  // m^2 or rad^2: poses that are all alike are so but for this
+  if (poses < 2) {
+    return false;
+  }
+  const int steps = poses - 1;
+  const double freedom = steps / 1.5;  // each shares a pose with the one before
+  const double variance = (0.5 * squares_ / steps + kRounding) * (1.0 + 1.0 / poses);
+  return from_mean.squaredNorm() > variance * freedom * (std::pow(kScans, 2.0 / freedom) - 1.0);
 }
 
 void Rest::Scatter::add(const Eigen::Vector3d& step)

@@ -105,6 +105,26 @@ TEST(Rest, NothingThatMovesStandsStill)
   }
 }
 
+/// Along one direction, where noise is felt most, and among few poses, which tell little of it.
+TEST(Rest, NoiseHardlyEverEndsIt)
+{
+  constexpr int kRuns = 10000;
+  constexpr int kFew = 20;
+  constexpr double kChance = 1.0 / 36000.0;
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal(0.0, kNoise);
+  int ended = 0;
+  for (int run = 0; run < kRuns; ++run) {
+    Rest rest;
+    rest.take(standing(0));
+    for (int scan = 1; scan < kFew; ++scan) {
+      rest.take({standing(0).rotation, standing(0).translation + normal(random) * Eigen::Vector3d::UnitX()});
+      ended += rest.poses() == 1 ? 1 : 0;
+    }
+  }
+  EXPECT_LT(ended, 3.0 * kChance * kRuns * kFew);
+}
+
 TEST(Rest, EndsAsSoonAsAPoseIsFarOff)
 {
   std::mt19937 random(3);
