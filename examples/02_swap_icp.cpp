@@ -4,7 +4,7 @@
 //   ./02_swap_icp a.pcd b.pcd
 // prints
 //   has converged: 1, score: ...
-//   converged after 1 iterations, standard deviations (m, then rad) 2.2e-06 2.2e-06 5.8e-07 7.8e-07 7.8e-07 3.4e-06
+//   converged after 1 iterations, standard deviations 2.2e-06 2.2e-06 5.8e-07 7.8e-07 7.8e-07 3.4e-06
 #include <pcl_floam/registration/edge_plane_registration.h>
 
 #include <pcl/common/transforms.h>
@@ -15,27 +15,21 @@
 
 using Point = pcl::PointXYZ;
 using Cloud = pcl::PointCloud<Point>;
-
 // using Icp = pcl::IterativeClosestPoint<Point, Point>;
 using Icp = pcl_floam::EdgePlaneRegistration<Point, Point>;
 
-namespace {
-
 /// A wavy sheet with a step in it.
-Cloud::Ptr makeCloud()
+static Cloud::Ptr makeCloud()
 {
   auto cloud = pcl::make_shared<Cloud>();
   for (int i = 0; i < 100; ++i) {
     for (int j = 0; j < 100; ++j) {
-      const float x = 0.01F * static_cast<float>(i);
-      const float y = 0.01F * static_cast<float>(j);
+      const float x = 0.01F * static_cast<float>(i), y = 0.01F * static_cast<float>(j);
       cloud->push_back(Point(x, y, 0.05F * std::sin(8.0F * x) * std::cos(5.0F * y) + (x > 0.6F ? 0.1F : 0.0F)));
     }
   }
   return cloud;
 }
-
-}  // namespace
 
 int main(int argc, char** argv)
 {
@@ -56,14 +50,12 @@ int main(int argc, char** argv)
   icp.setInputTarget(target);
   icp.setMaximumIterations(50);
   icp.setTransformationEpsilon(1e-8);
-
   Cloud aligned;
   icp.align(aligned);
   std::cout << "has converged: " << icp.hasConverged() << ", score: " << icp.getFitnessScore() << '\n'
             << icp.getFinalTransformation() << '\n';
   const pcl_floam::RegistrationReport& report = icp.report();  // what ICP does not tell
-  std::cout << toString(report.termination) << " after " << report.iterations
-            << " iterations, standard deviations (m, then rad) " << report.covariance.diagonal().cwiseSqrt().transpose()
-            << '\n';
+  std::cout << toString(report.termination) << " after " << report.iterations << " iterations, standard deviations "
+            << report.covariance.diagonal().cwiseSqrt().transpose() << '\n';  // m, then rad
   return icp.hasConverged() ? 0 : 1;
 }

@@ -12,8 +12,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <exception>
 #include <iostream>
-#include <stdexcept>
 
 namespace {
 
@@ -52,10 +52,7 @@ try {
   }
   std::cout << localized << " of " << scans.size() << " scans localised\n";
   return localized == scans.size() ? 0 : 1;
-} catch (const pcl_floam::FileError& error) {
-  std::cerr << error.what() << '\n';
-  return 2;
-} catch (const std::invalid_argument& error) {  // an empty map
+} catch (const std::exception& error) {  // a file that cannot be read, an empty map
   std::cerr << error.what() << '\n';
   return 2;
 }

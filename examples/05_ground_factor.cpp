@@ -2,13 +2,13 @@
 //
 //   ./05_ground_factor SCANS
 // prints
-//   up or down by 7.25392 mm, on level ground by 2.66571 mm
-#include <pcl_floam/io/scan_source.h>
-#include <pcl_floam/odometry/odometry.h>
+//   by its points, up or down by 7.25392 mm
+//   ...
+//   on level ground, up or down by 2.66571 mm
+#include "each_scan.h"
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 
 namespace {
 
@@ -30,34 +30,27 @@ public:
   }
 };
 
-double largestHeight(const pcl_floam::ScanSource& scans, const pcl_floam::OdometryComponents& components)
-{
-  pcl_floam::OdometryParameters parameters;
-  parameters.pose_instant = pcl_floam::PoseInstant::middle;  // as factors are asked
-  pcl_floam::OdometryPipeline odometry(parameters);          // for a known point type: pcl_floam::Odometry<PointT>
-  odometry.setComponents(components);
-  double largest = 0.0;
-  pcl::PCLPointCloud2 scan;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    scans.read(i, scan);
-    const auto& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
-    largest = std::max(largest, std::abs(report.world_T_sensor.translation.z()));
-  }
-  return largest;
-}
-
 }  // namespace
 
 int main(int argc, char** argv)
-try {
-  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
-  pcl_floam::OdometryComponents components;
-  const double by_points = largestHeight(scans, components);
-  components.factors = {std::make_shared<LevelGround>()};
-  std::cout << "up or down by " << 1000.0 * by_points << " mm, on level ground by "
-            << 1000.0 * largestHeight(scans, components) << " mm\n";
-  return 0;
-} catch (const pcl_floam::FileError& error) {
-  std::cerr << error.what() << '\n';
-  return 2;
+{
+  for (const bool is_level : {false, true}) {
+    pcl_floam::OdometryParameters parameters;
+    parameters.pose_instant = pcl_floam::PoseInstant::middle;  // as factors are asked
+    pcl_floam::OdometryPipeline odometry(parameters);          // for a known point type: pcl_floam::Odometry<PointT>
+    pcl_floam::OdometryComponents components;
+    if (is_level) {
+      components.factors = {std::make_shared<LevelGround>()};
+    }
+    odometry.setComponents(components);
+    double largest = 0.0;
+    const int status = trackEachScan(argc, argv, [&](const pcl_floam::CloudView& scan, std::optional<double> stamp) {
+      largest = std::max(largest, std::abs(odometry.track(scan, stamp).world_T_sensor.translation.z()));
+      return odometry.report();
+    });
+    if (status != 0) {
+      return status;
+    }
+    std::cout << (is_level ? "on level ground" : "by its points") << ", up or down by " << 1000.0 * largest << " mm\n";
+  }
 }

@@ -3,108 +3,62 @@
 //   ./06_intensity_factor SCANS
 // prints
 //   000019.pcd: tracked, at     1.25808 -0.00105192  0.00371405
-#include <pcl_floam/io/scan_source.h>
-#include <pcl_floam/odometry/odometry.h>
-
-#include <array>
-#include <cmath>
-#include <iostream>
 #include <map>
-#include <optional>
-#include <vector>
-
-namespace {
+#include "each_scan.h"
 
 class Brightness : public pcl_floam::PoseFactor {
 public:
-  void setScan(const pcl_floam::CloudView& scan)
-  {
-    scan_.clear();
-    for (std::size_t i = 0; i < scan.size; i += kEvery) {
-      if (std::isfinite(scan.x(i))) {
-        scan_.push_back({{scan.x(i), scan.y(i), scan.z(i)}, scan.intensityOf(i)});
-      }
-    }
-  }
-
-  void addTo(const pcl_floam::SE3& world_T_sensor, pcl_floam::PoseEquations& equations) const override
-  {
-    for (const Return& r : scan_) {
-      const Eigen::Vector3d arm = world_T_sensor.rotation * r.place;
-      const Eigen::Vector3d place = world_T_sensor.translation + arm;
-      const std::optional<double> here = at(place);
-      Eigen::Vector3d slope = Eigen::Vector3d::Zero();
-      for (int axis = 0; here && axis < 3; ++axis) {
-        const Eigen::Vector3d step = kSide * Eigen::Vector3d::Unit(axis);
-        const std::optional<double> before = at(place - step), after = at(place + step);
-        slope[axis] = before && after ? (*after - *before) / (2.0 * kSide) : 0.0;
-      }
-      pcl_floam::Vector6 derivative;
-      derivative << slope, arm.cross(slope);
-      equations.add(here ? *here - r.intensity : 0.0, derivative, kNoise * kNoise);
-    }
-  }
-
+  pcl_floam::CloudView scan;  // the present one
   void addScan(const pcl_floam::SE3& world_T_sensor)
   {
-    for (const Return& r : scan_) {
-      Cell& cell = cells_[cellAt(world_T_sensor * r.place)];
-      cell.sum += r.intensity;
-      cell.count += 1.0;
+    for (std::size_t i = 0; i < scan.size; i += 20) {
+      auto& [sum, count] = cells_[cellAt(world_T_sensor * Eigen::Vector3d(scan.x(i), scan.y(i), scan.z(i)))];
+      sum += scan.intensityOf(i);
+      count += 1.0;
+    }
+  }
+  void addTo(const pcl_floam::SE3& world_T_sensor, pcl_floam::PoseEquations& equations) const override
+  {
+    for (std::size_t i = 0; i < scan.size; i += 20) {
+      const Eigen::Vector3d arm = world_T_sensor.rotation * Eigen::Vector3d(scan.x(i), scan.y(i), scan.z(i));
+      const Eigen::Vector3d place = world_T_sensor.translation + arm;
+      Eigen::Vector3d slope;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double rise =
+            at(place + kSide * Eigen::Vector3d::Unit(axis)) - at(place - kSide * Eigen::Vector3d::Unit(axis));
+        slope[axis] = std::isfinite(rise) ? rise / (2.0 * kSide) : 0.0;
+      }
+      if (const double off = at(place) - scan.intensityOf(i); std::isfinite(off) && arm.allFinite()) {
+        equations.add(off, (pcl_floam::Vector6() << slope, arm.cross(slope)).finished(), 2500.0);  // of 0 to 255
+      }
     }
   }
 
 private:
-  static constexpr std::size_t kEvery = 20;
-  static constexpr double kSide = 0.25;   // m
-  static constexpr double kNoise = 50.0;  // of intensities from 0 to 255, shared by many returns
-  struct Return {
-    Eigen::Vector3d place;
-    float intensity;
-  };
-  struct Cell {
-    double sum = 0.0, count = 0.0;
-  };
-  using Key = std::array<int, 3>;
-
-  static Key cellAt(const Eigen::Vector3d& p)
+  static constexpr double kSide = 0.25;  // m, of cells that keep the mean of what was seen in them
+  static std::array<long, 3> cellAt(const Eigen::Vector3d& p)
   {
-    const auto n = [](double x) { return static_cast<int>(std::floor(x / kSide)); };
-    return {n(p.x()), n(p.y()), n(p.z())};
+    return {std::lround(p.x() / kSide), std::lround(p.y() / kSide), std::lround(p.z() / kSide)};
   }
-  std::optional<double> at(const Eigen::Vector3d& p) const
+  double at(const Eigen::Vector3d& p) const  // NaN where nothing was seen
   {
     const auto cell = cells_.find(cellAt(p));
-    return cell == cells_.end() ? std::nullopt : std::optional(cell->second.sum / cell->second.count);
+    return cell == cells_.end() ? std::nan("") : cell->second.first / cell->second.second;
   }
-
-  std::vector<Return> scan_;
-  std::map<Key, Cell> cells_;
+  std::map<std::array<long, 3>, std::pair<double, double>> cells_;  // sum, count
 };
 
-}  // namespace
-
 int main(int argc, char** argv)
-try {
-  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
+{
   const auto brightness = std::make_shared<Brightness>();
   pcl_floam::OdometryParameters parameters;
   parameters.pose_instant = pcl_floam::PoseInstant::middle;  // as factors are asked
   pcl_floam::OdometryPipeline odometry(parameters);
-  pcl_floam::OdometryComponents components;
-  components.factors = {brightness};
-  odometry.setComponents(components);
-  pcl::PCLPointCloud2 scan;
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    scans.read(i, scan);
-    brightness->setScan(pcl_floam::viewOf(scan));
-    const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
+  odometry.setComponents({{brightness}, {}, {}, {}});
+  return trackEachScan(argc, argv, [&](const pcl_floam::CloudView& scan, std::optional<double> stamp) {
+    brightness->scan = scan;
+    const pcl_floam::OdometryReport& report = odometry.track(scan, stamp);
     brightness->addScan(report.world_T_sensor);
-    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
-              << report.world_T_sensor.translation.transpose() << '\n';
-  }
-  return 0;
-} catch (const pcl_floam::FileError& error) {
-  std::cerr << error.what() << '\n';
-  return 2;
+    return report;
+  });
 }

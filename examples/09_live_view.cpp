@@ -1,6 +1,6 @@
 // The odometry at work: the present scan (red), the map (grey) and the way so far (green). Q closes the window.
 //
-//   ./09_live_view SCANS [--frames N] [--picture FILE.png]     (stop after N scans; save what was seen last)
+//   ./09_live_view SCANS [PICTURE.png]     (save what was seen last, and end)
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 
@@ -10,8 +10,6 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderWindowInteractor.h>
 
-#include <cstdlib>
-#include <cstring>
 #include <iostream>
 #include <string>
 
@@ -30,30 +28,17 @@ void show(pcl::visualization::PCLVisualizer& viewer, const Cloud::ConstPtr& clou
   }
 }
 
-/// From behind and above, as a kite sees it.
-void follow(pcl::visualization::PCLVisualizer& viewer, const Eigen::Vector3d& at, const Eigen::Vector3d& forward)
-{
-  const Eigen::Vector3d from = at - 15.0 * forward + Eigen::Vector3d(0.0, 0.0, 25.0);
-  viewer.setCameraPosition(from.x(), from.y(), from.z(), at.x(), at.y(), at.z(), 0.0, 0.0, 1.0);
-}
-
 }  // namespace
 
 int main(int argc, char** argv)
 try {
-  std::size_t frames = static_cast<std::size_t>(-1);
-  std::string picture;
-  for (int i = 2; i + 1 < argc; i += 2) {
-    std::strcmp(argv[i], "--frames") == 0 ? void(frames = std::strtoul(argv[i + 1], nullptr, 10))
-                                          : void(picture = argv[i + 1]);
-  }
   const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
   pcl_floam::OdometryPipeline odometry;
   pcl::visualization::PCLVisualizer viewer("pcl_floam");
   viewer.getRenderWindow()->GetInteractor()->CreateRepeatingTimer(10);  // else PCL 1.13 waits there for the user
   auto path = pcl::make_shared<Cloud>();
   pcl::PCLPointCloud2 blob;
-  for (std::size_t i = 0; i < std::min(frames, scans.size()) && !viewer.wasStopped(); ++i) {
+  for (std::size_t i = 0; i < scans.size() && !viewer.wasStopped(); ++i) {
     scans.read(i, blob);
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(blob), scans.stamp(i));
 
@@ -61,25 +46,25 @@ try {
     pcl::fromPCLPointCloud2(blob, sensed);
     auto scan = pcl::make_shared<Cloud>();
     pcl::transformPointCloud(sensed, *scan, report.world_T_sensor.matrix<float>());
-    const Eigen::Vector3d& at = report.world_T_sensor.translation;
     for (std::size_t n = 0, count = report.corrected_poses.size(); n < count; ++n) {
       (*path)[path->size() - count + n].getVector3fMap() = report.corrected_poses[n].translation.cast<float>();
     }
-    path->push_back(pcl::PointXYZ(at.cast<float>().x(), at.cast<float>().y(), at.cast<float>().z()));
-
+    path->push_back(pcl::PointXYZ());
+    path->back().getVector3fMap() = report.world_T_sensor.translation.cast<float>();
     if (report.keyframe) {
       const auto map = odometry.map().cloud(pcl_floam::FeatureKind::plane);
       show(viewer, map, Colour(map, 150, 150, 150), "map", 1.0);
     }
     show(viewer, scan, Colour(scan, 255, 80, 60), "scan", 1.0);
     show(viewer, path, Colour(path, 60, 255, 90), "path", 4.0);
-    follow(viewer, at, report.world_T_sensor.rotation.col(0));
+    const Eigen::Vector3d& at = report.world_T_sensor.translation;  // seen from a kite behind it
+    viewer.setCameraPosition(at.x() - 15.0, at.y(), at.z() + 25.0, at.x(), at.y(), at.z(), 0.0, 0.0, 1.0);
     viewer.spinOnce(1, true);
   }
-  if (!picture.empty()) {
-    viewer.saveScreenshot(picture);
+  if (argc > 2) {
+    viewer.saveScreenshot(argv[2]);
   }
-  while (frames > scans.size() && !viewer.wasStopped()) {  // all seen: stay open
+  while (argc <= 2 && !viewer.wasStopped()) {  // all seen: stay open
     viewer.spinOnce(1, true);
   }
   return 0;

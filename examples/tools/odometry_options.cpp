@@ -67,26 +67,16 @@ void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
       "work from scan lines, or from neighbourhoods in space as for\n"
       "lidars that have none; auto: scan lines where they are found.\n"
       "With scan-lines, a scan without them is not tracked");
-  addChoice(app, "--scan-lines", o.parameters.scan_line_source,
-            {{"auto", ScanLineSource::automatic},
-             {"ring-field", ScanLineSource::ring_field},
-             {"rows", ScanLineSource::organized_rows},
-             {"file-order", ScanLineSource::file_order},
-             {"elevation-table", ScanLineSource::elevation_table},
-             {"elevation-clusters", ScanLineSource::elevation_clusters}},
-            "where the points' scan lines come from");
   addChoice(app, "--timing", o.parameters.timing_source,
             {{"auto", ScanTimingSource::automatic},
              {"field", ScanTimingSource::time_field},
              {"columns", ScanTimingSource::columns},
              {"azimuth", ScanTimingSource::azimuth},
+             {"clockwise", ScanTimingSource::clockwise},
+             {"counterclockwise", ScanTimingSource::counterclockwise},
              {"none", ScanTimingSource::none}},
-            "where the points' times come from");
-  addChoice(app, "--rotation", o.parameters.rotation,
-            {{"auto", ScanRotation::automatic},
-             {"clockwise", ScanRotation::clockwise},
-             {"counterclockwise", ScanRotation::counterclockwise}},
-            "how the head turns, seen from above; where times are the azimuth's");
+            "where the points' times come from; (counter)clockwise: from the\n"
+            "azimuth, the head turning so, seen from above");
 }
 
 void addPriorMapOptions(CLI::App& app, OdometryOptions& o)
@@ -147,14 +137,13 @@ void addResultOptions(CLI::App& app, OdometryOptions& o)
 }
 
 constexpr const char* kPoseEstimation = "Pose estimation (but for --planar, of --engine features)";
-constexpr const char* kCorrespondences = "Correspondences (of --engine features)";
 
 /// What would have no effect is a mistake.
 void refuseWithoutFeatures(const CLI::App& app, const OdometryOptions& o)
 {
   for (const CLI::Option* option : app.get_options()) {
     const std::string& group = option->get_group();
-    const bool of_features = group == kPoseEstimation || group == kCorrespondences;
+    const bool of_features = group == kPoseEstimation;
     if (o.parameters.engine != OdometryEngine::features && of_features && option->count() > 0 &&
         !option->check_lname("planar")) {
       throw CLI::ValidationError(option->get_name(), "has an effect with --engine features only");
@@ -184,13 +173,11 @@ void addFeatureOptions(CLI::App& app, FeatureParameters& p)
   addChoice(app, "--smoothness", p.smoothness,
             {{"vector-sum", SmoothnessKind::vector_sum}, {"mean-of-norms", SmoothnessKind::mean_of_norms}},
             "reading of Eq. 1: LOAM's, or as printed");
-  addNumber(app, "--sectors", p.sectors, "N", "sectors of a scan line, among which features are spread");
-  addNumber(app, "--edges-per-sector", p.edges_per_sector, "N", "most edges in one sector of one scan line");
-  addNumber(app, "--planes-per-sector", p.planes_per_sector, "N", "most planes in one sector of one scan line");
+  addNumber(app, "--edges-per-sector", p.edges_per_sector, "N", "most edges in a sixth of a scan line");
+  addNumber(app, "--planes-per-sector", p.planes_per_sector, "N", "most planes in a sixth of a scan line");
   addNumber(app, "--min-range", p.min_range, "M", "nearer points are left out");
   addNumber(app, "--max-range", p.max_range, "M", "farther points are left out");
   addNumber(app, "--edge-threshold", p.edge_threshold, "M", "smoothness that an edge must exceed");
-  addNumber(app, "--edge-bend", p.edge_bend, "RATIO", "and relative to the points' spacing");
   addNumber(app, "--plane-threshold", p.plane_threshold, "M", "smoothness that a plane must not exceed");
 }
 
@@ -203,9 +190,6 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
       app, "--weights", p.weights,
       {{"uniform", WeightScheme::uniform}, {"inverted", WeightScheme::inverted}, {"printed", WeightScheme::printed}},
       "smoothness weights of Eq. 9; inverted is what its text\nwants, printed is the formula");
-  addChoice(app, "--weight-normalization", p.weight_normalization,
-            {{"mean-one", WeightNormalization::mean_one}, {"sum-one", WeightNormalization::sum_one}},
-            "sum-one lets edges as a whole count as much as planes");
   addChoice(app, "--kernel", p.kernel,
             {{"none", RobustKernel::none},
              {"huber", RobustKernel::huber},
@@ -214,25 +198,14 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
             "robust kernel on the residuals");
   app.add_flag_callback(
       "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
-  addNumber(app, "--max-features", p.max_features, "N", "most planes that are registered; edges: a sixth");
-  addNumber(app, "--edge-weight", p.edge_weight, "RATIO", "what an edge counts beside a plane");
-  addNumber(app, "--max-iterations", p.max_iterations, "N", "each with fresh correspondences");
-}
-
-void addCorrespondenceOptions(CLI::App& app, RegistrationParameters& p)
-{
-  app.option_defaults()->group(kCorrespondences);
-  addNumber(app, "--max-neighbor-distance", p.max_neighbor_distance, "M", "those points are no farther than this");
-  addNumber(app, "--min-correspondences", p.min_correspondences, "N", "with fewer the pose is predicted");
 }
 
 void addMapOptions(CLI::App& app, OdometryParameters& p)
 {
   app.option_defaults()->group("Map");
-  addNumber(app, "--keyframe-translation", p.keyframe.translation, "M", "a scan enters the map after this way");
-  addNumber(app, "--keyframe-rotation", p.keyframe.rotation, "RAD", "or after this turn");
-  addNumber(app, "--edge-voxel-size", p.map.edge_voxel_size, "M", "one edge point is kept per voxel of this size");
-  addNumber(app, "--plane-voxel-size", p.map.plane_voxel_size, "M", "one plane point is kept per voxel of this size");
+  addNumber(app, "--keyframe-translation", p.keyframe.translation, "M", "a scan enters the map after this way,\nor a turn by which what is 5 m away moves so far");
+  addNumber(app, "--voxel-size", p.map.voxel_size, "M",
+            "one plane point is kept per voxel of this size; edges' are half as wide");
   addNumber(app, "--horizon", p.map.horizon, "M", "the map forgets what is farther from the sensor");
   addNumber(app, "--see-through-range", p.map.see_through_range, "M",
             "up to so far away, the map forgets places that later scans see through: what has gone; 0: never");
@@ -260,7 +233,6 @@ void addOptions(CLI::App& app, OdometryOptions& options)
   addCompensationOptions(app, options);
   addFeatureOptions(app, options.parameters.features);
   addSolverOptions(app, options.parameters.registration);
-  addCorrespondenceOptions(app, options.parameters.registration);
   addMapOptions(app, options.parameters);
   addRunOptions(app, options);
   app.parse_complete_callback([&app, &options] { refuseWithoutFeatures(app, options); });

@@ -25,11 +25,11 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
     return;
   }
   ScanLines lines;
-  ScanTiming timing = findScanTiming(view, lines, report.timing_source, report.rotation);
+  ScanTiming timing = findScanTiming(view, lines, report.timing_source);
   if (!timing.valid() && report.timing_source != ScanTimingSource::none &&
       parameters.structure != ScanStructure::space) {
-    findScanLines(view, parameters.sensor, parameters.scan_line_source, lines);
-    timing = findScanTiming(view, lines, report.timing_source, report.rotation);
+    findScanLines(view, parameters.sensor, ScanLineSource::automatic, lines);
+    timing = findScanTiming(view, lines, report.timing_source);
   }
   if (!timing.valid()) {
     return;
@@ -95,7 +95,6 @@ void ScanSaver::correct(std::size_t scan, const OdometryReport& report)
   };
   for (Waiting& one : waiting_) {
     one.report.timing_source = report.timing_source;
-    one.report.rotation = report.rotation;
     if (scan - one.scan <= poses.size()) {
       one.report.world_T_sensor = poseOf(one.scan);
       one.report.registration.sweep_twist = log(poseOf(one.scan).inverse() * poseOf(one.scan + 1));

@@ -14,6 +14,12 @@ namespace pcl_floam {
 
 namespace {
 
+/// Parts of a scan line, among which the features are spread, as LOAM's.
+constexpr int kSectors = 6;
+
+/// Smoothness over the mean distance to the neighbours at a blunt corner: 0 on a line, 0.7 at a right angle.
+constexpr float kBend = 0.35F;
+
 /// Of the smoothness that makes an edge, so much must lie across the line. Where a surface steps back by a hand's
 /// breadth, as at a door, about a third does.
 constexpr float kAcross = 0.3F;
@@ -58,9 +64,9 @@ public:
     neighbors_ = line_.each_side;
     const int begin = neighbors_;
     const int length = line_.points.size() - 2 * begin;
-    for (int sector = 0; sector < parameters_.sectors; ++sector) {
-      const int first = begin + length * sector / parameters_.sectors;
-      const int last = begin + length * (sector + 1) / parameters_.sectors;
+    for (int sector = 0; sector < kSectors; ++sector) {
+      const int first = begin + length * sector / kSectors;
+      const int last = begin + length * (sector + 1) / kSectors;
       selectEdges(first, last);
       selectPlanes(first, last);
     }
@@ -109,17 +115,17 @@ private:
     if (!(sharpness(n) > 0.0F)) {  // in the neighbourhood of one taken since
       return false;
     }
-    const float distance = meanNeighborDistance(line_.points, n, neighbors_);
-    if (!(sharpness(n) > parameters_.edge_bend * distance)) {
-      return false;
-    }
-    if (parameters_.smoothness != SmoothnessKind::vector_sum) {
+    if (parameters_.smoothness != SmoothnessKind::vector_sum) {  // a mean of norms is 1 on a line as well
       return true;
+    }
+    const float distance = meanNeighborDistance(line_.points, n, neighbors_);
+    if (!(sharpness(n) > kBend * distance)) {
+      return false;
     }
     // Where returns are missing, a straight line's neighbours are nearer on one side: its sum is long, but along it.
     const float across = meanDifferenceAcross(line_.points, n, neighbors_);
     return isBesideDepthStep(line_.points, n) ||
-           across > kAcross * std::max(line_.edge_threshold, parameters_.edge_bend * distance);
+           across > kAcross * std::max(line_.edge_threshold, kBend * distance);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.

@@ -12,13 +12,11 @@ const char* toString(SmoothnessKind kind)
 void validate(const FeatureParameters& p)
 {
   const ParameterCheck check("feature extraction");
-  check.range("sectors", p.sectors, 1, 64);
   check.range("edges_per_sector", p.edges_per_sector, 0, 100);
   check.range("planes_per_sector", p.planes_per_sector, 0, 1000);
   check.atLeast("min_range", p.min_range, 0.0);
   check.above("max_range", p.max_range, p.min_range);
   check.atLeast("edge_threshold", p.edge_threshold, 0.0);
-  check.range("edge_bend", p.edge_bend, 0.0, 1.0);
   check.above("plane_threshold", p.plane_threshold, 0.0);
 }
 

@@ -20,6 +20,8 @@ const char* toString(ScanTimingSource source)
     case ScanTimingSource::time_field: return "time field";
     case ScanTimingSource::columns: return "columns";
     case ScanTimingSource::azimuth: return "azimuth";
+    case ScanTimingSource::clockwise: return "azimuth, clockwise";
+    case ScanTimingSource::counterclockwise: return "azimuth, counterclockwise";
     case ScanTimingSource::none: return "none";
   }
   return "unknown";
@@ -153,8 +155,10 @@ bool timingFromColumns(const CloudView& cloud, const ScanLines& lines, ScanTimin
   return true;
 }
 
-bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotation rotation, ScanTiming& timing)
+bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source, ScanTiming& timing)
 {
+  const bool is_clockwise = source == ScanTimingSource::clockwise;
+  const bool is_given = is_clockwise || source == ScanTimingSource::counterclockwise;
   if (!lines.valid()) {
     return false;
   }
@@ -164,21 +168,20 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanRotat
     timing.start_azimuth = 0.5 * kTwoPi;
   } else if (order_shows_rotation) {
     const int direction = lineDirection(cloud, lines);
-    if (direction == 0 && rotation == ScanRotation::automatic) {
+    if (direction == 0 && !is_given) {
       return false;
     }
     timing.clockwise = direction < 0;
     timing.start_azimuth = firstAzimuth(cloud);
-    const bool is_against =
-        rotation != ScanRotation::automatic && timing.clockwise != (rotation == ScanRotation::clockwise);
+    const bool is_against = is_given && timing.clockwise != is_clockwise;
     timing.firing_order = !is_against && isInFiringOrder(cloud, timing);
-  } else if (rotation == ScanRotation::automatic) {
+  } else if (!is_given) {
     return false;  // sorted afterwards: nothing tells where the sweep began or which way it went
   } else {
     timing.start_azimuth = 0.5 * kTwoPi;
   }
-  if (rotation != ScanRotation::automatic) {
-    timing.clockwise = rotation == ScanRotation::clockwise;
+  if (is_given) {
+    timing.clockwise = is_clockwise;
   }
   timing.source = ScanTimingSource::azimuth;
   return true;
@@ -240,6 +243,8 @@ float ScanTiming::at(const CloudView& cloud, std::size_t i) const
       return time;
     }
     case ScanTimingSource::automatic:
+    case ScanTimingSource::clockwise:
+    case ScanTimingSource::counterclockwise:
     case ScanTimingSource::none: break;
   }
   return withinSweep(fraction);
@@ -258,8 +263,7 @@ double ScanTiming::sinceStamp(double fraction, double stamp) const
   return std::abs(start) <= 2.0 * duration ? start + within : within;
 }
 
-ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source,
-                          ScanRotation rotation, int threads)
+ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTimingSource source, int threads)
 {
   ScanTiming timing;
   const bool any = source == ScanTimingSource::automatic;
@@ -269,8 +273,9 @@ ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTi
   if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {
     return timing;
   }
-  const bool may_turn = rotation != ScanRotation::automatic || goesRound(cloud, lines);
-  if (((any && may_turn) || source == ScanTimingSource::azimuth) && timingFromAzimuth(cloud, lines, rotation, timing)) {
+  const bool by_azimuth = source == ScanTimingSource::azimuth || source == ScanTimingSource::clockwise ||
+                          source == ScanTimingSource::counterclockwise;
+  if ((by_azimuth || (any && goesRound(cloud, lines))) && timingFromAzimuth(cloud, lines, source, timing)) {
     return timing;
   }
   return {};

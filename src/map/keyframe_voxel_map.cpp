@@ -18,14 +18,13 @@ const char* toString(SearchMethod method)
 void validate(const MapParameters& p)
 {
   const ParameterCheck check("map");
-  check.above("edge_voxel_size", p.edge_voxel_size, 0.0);
-  check.above("plane_voxel_size", p.plane_voxel_size, 0.0);
+  check.above("voxel_size", p.voxel_size, 0.0);
   check.above("horizon", p.horizon, 0.0);
   check.atLeast("see_through_range", p.see_through_range, 0.0);
 }
 
 struct KeyframeVoxelMap::Impl {
-  explicit Impl(const MapParameters& p) : parameters(p), edges(p.edge_voxel_size), planes(p.plane_voxel_size) {}
+  explicit Impl(const MapParameters& p) : parameters(p), edges(0.5 * p.voxel_size), planes(p.voxel_size) {}
 
   [[nodiscard]] VoxelLayer& layer(FeatureKind kind) { return kind == FeatureKind::edge ? edges : planes; }
 

@@ -115,7 +115,7 @@ struct FeatureOdometry : OdometryRun {
   [[nodiscard]] bool hasEnoughFeatures() const
   {
     return static_cast<int>(scan.features.edges.size() + scan.features.planes.size()) >=
-           parameters.registration.min_correspondences;
+           kFewestCorrespondences;
   }
 
   /// The map begins with the first scan.

@@ -39,15 +39,10 @@ void validate(const OdometryParameters& p)
   check.atLeast("scan_period", p.scan_period, 0.0);
   check.range("threads", p.threads, 1, 1024);
   check.atLeast("keyframe translation", p.keyframe.translation, 0.0);
-  check.atLeast("keyframe rotation", p.keyframe.rotation, 0.0);
   if (p.structure == ScanStructure::space && p.engine == OdometryEngine::features) {
     throw std::invalid_argument("odometry: structure is space, but the engine 'features' needs scan lines");
   }
-  if (p.structure == ScanStructure::space && p.scan_line_source != ScanLineSource::automatic) {
-    throw std::invalid_argument("odometry: structure is space, but a source of scan lines is given");
-  }
   validate(p.features);
-  validate(p.registration);
   validate(p.map);
 }
 

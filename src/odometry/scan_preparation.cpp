@@ -23,7 +23,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines = ScanLines();
     lines.failure = ScanLineFailure::not_looked_for;
   } else {
-    findScanLines(scan, parameters.sensor, parameters.scan_line_source, parameters.threads, grouping_, lines);
+    findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
     if (lines.valid() && lines.lines() < kFewestLines && may_do_without) {
@@ -32,7 +32,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     }
   }
   const auto timingBy = [&](ScanTimingSource source) {
-    return findScanTiming(scan, lines, source, parameters.rotation, parameters.threads);
+    return findScanTiming(scan, lines, source, parameters.threads);
   };
   timing = timingBy(parameters.timing_source);
   if (!timing.valid() && turns_ && parameters.timing_source == ScanTimingSource::automatic) {
@@ -49,7 +49,7 @@ bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters&
 {
   const bool is_asked = parameters.timing_source == ScanTimingSource::azimuth;
   if ((!is_asked && parameters.timing_source != ScanTimingSource::automatic) ||
-      parameters.rotation != ScanRotation::automatic || parameters.compensation == CompensationMode::none) {
+      parameters.compensation == CompensationMode::none) {
     return false;
   }
   if (timing.valid()) {
@@ -57,7 +57,7 @@ bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters&
   }
   turns_ = turns_ || is_asked || (lines.valid() && goesRound(scan, lines));
   if (lines.sorted_by_azimuth && turns_) {
-    timing = findScanTiming(scan, lines, ScanTimingSource::azimuth, ScanRotation::clockwise, parameters.threads);
+    timing = findScanTiming(scan, lines, ScanTimingSource::clockwise, parameters.threads);
     sweep_fraction = timing.valid() ? 1.0 : 0.0;
   }
   return timing.valid();
@@ -111,7 +111,7 @@ void PreparedScan::describeIn(OdometryReport& report) const
   report.scan_lines = lines.lines();
   report.timing_source = timing.source;
   if (timing.source == ScanTimingSource::azimuth) {
-    report.rotation = timing.clockwise ? ScanRotation::clockwise : ScanRotation::counterclockwise;
+    report.timing_source = timing.clockwise ? ScanTimingSource::clockwise : ScanTimingSource::counterclockwise;
   }
   report.edges = features.edges.size();
   report.planes = features.planes.size();

@@ -178,9 +178,9 @@ struct SurfaceOdometry : OdometryRun {
   {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
-    } else if (direction() < 0.0 && report.timing_source == ScanTimingSource::azimuth) {
-      report.rotation =
-          report.rotation == ScanRotation::clockwise ? ScanRotation::counterclockwise : ScanRotation::clockwise;
+    } else if (direction() < 0.0) {  // of the azimuth's times alone
+      report.timing_source = report.timing_source == ScanTimingSource::clockwise ? ScanTimingSource::counterclockwise
+                                                                                 : ScanTimingSource::clockwise;
       report.registration.sweep_twist = -report.registration.sweep_twist;
     }
   }

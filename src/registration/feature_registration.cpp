@@ -20,7 +20,8 @@ constexpr std::size_t kMaxStride = 4;
 /// Steps of less than so many times the thresholds of convergence are near.
 constexpr double kNear = 10.0;
 
-/// An edge costs what a plane does, and says less.
+/// More planes take longer and tell hardly more; an edge costs what a plane does, and says less.
+constexpr std::size_t kMostPlanes = 1000;
 constexpr std::size_t kPlanesPerEdge = 6;
 
 /// Directions with less information than this, over the sum of the weights and with rotations scaled to metres, are
@@ -40,17 +41,9 @@ std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t mo
 }
 
 /// The features that are registered.
-FeatureSet sampleOf(const FeatureSet& source, std::size_t most_planes)
+FeatureSet sampleOf(const FeatureSet& source)
 {
-  return {evenly(source.edges, most_planes / kPlanesPerEdge), evenly(source.planes, most_planes)};
-}
-
-std::vector<double> times(double factor, std::vector<double> weights)
-{
-  for (double& weight : weights) {
-    weight *= factor;
-  }
-  return weights;
+  return {evenly(source.edges, kMostPlanes / kPlanesPerEdge), evenly(source.planes, kMostPlanes)};
 }
 
 /// One registration in progress.
@@ -64,13 +57,10 @@ public:
         model_(localModel(run)),
         problem_{target, parameters, run.guess.translation, run.threads},
         trajectory_(startOf(model_, {run.guess.rotation, Eigen::Vector3d::Zero()})),
-        search_radius_(std::max(parameters.max_neighbor_distance, run.guess_uncertainty)),
+        search_radius_(std::max(run.max_correspondence_distance, run.guess_uncertainty)),
         stride_(std::clamp<std::size_t>((source.edges.size() + source.planes.size()) / kEnoughFeatures, 1, kMaxStride)),
-        edge_weights_(times(
-            parameters.edge_weight,
-            smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights, parameters.weight_normalization))),
-        plane_weights_(
-            smoothnessWeights(source.planes, FeatureKind::plane, parameters.weights, parameters.weight_normalization))
+        edge_weights_(smoothnessWeights(source.edges, FeatureKind::edge, parameters.weights)),
+        plane_weights_(smoothnessWeights(source.planes, FeatureKind::plane, parameters.weights))
   {
     report_.target_T_source = run.guess;
   }
@@ -78,7 +68,7 @@ public:
   RegistrationReport run()
   {
     report_.termination = Termination::iteration_limit;
-    for (int i = 0; i < problem_.parameters.max_iterations; ++i) {
+    for (int i = 0; i < run_.max_iterations; ++i) {
       if (iterate()) {
         break;
       }
@@ -123,7 +113,7 @@ private:
     equations_.information += besides.information;
     equations_.gradient += besides.gradient;
     ++report_.iterations;
-    if (equations_.count() < problem_.parameters.min_correspondences) {
+    if (equations_.count() < kFewestCorrespondences) {
       if (stride_ > 1) {
         stride_ = 1;
         return false;
@@ -167,9 +157,9 @@ private:
     if (model_.follows_pose) {
       trajectory_ = startOf(model_, trajectory_.pose());
     }
-    const bool searched_wide = search_radius_ > problem_.parameters.max_neighbor_distance;
+    const bool searched_wide = search_radius_ > run_.max_correspondence_distance;
     if (searched_wide) {
-      search_radius_ = std::max(problem_.parameters.max_neighbor_distance, 0.5 * search_radius_);
+      search_radius_ = std::max(run_.max_correspondence_distance, 0.5 * search_radius_);
       correspondences_ = Correspondences();  // they were found within the wider radius
     }
     const bool small =
@@ -195,7 +185,7 @@ private:
     if (!pose().isFinite()) {
       report_.termination = Termination::degenerate;
     }
-    if (report_.hasConverged() && equations_.count() < problem_.parameters.min_correspondences) {
+    if (report_.hasConverged() && equations_.count() < kFewestCorrespondences) {
       report_.termination = Termination::too_few_correspondences;  // the last iteration found that a quarter is too few
     }
     if (!report_.hasConverged() || !(equations_.weight > 0.0)) {
@@ -239,7 +229,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.target_T_source = SE3();
     return report;
   }
-  if (static_cast<int>(source.edges.size() + source.planes.size()) < parameters.min_correspondences) {
+  if (static_cast<int>(source.edges.size() + source.planes.size()) < kFewestCorrespondences) {
     report.termination = Termination::too_few_features;
     return report;
   }
@@ -247,7 +237,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  const FeatureSet sample = sampleOf(source, static_cast<std::size_t>(parameters.max_features));
+  const FeatureSet sample = sampleOf(source);
   return FeaturePoseEstimation(sample, target, run, parameters).run();
 }
 

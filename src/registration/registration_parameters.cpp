@@ -1,8 +1,5 @@
 #include <pcl_floam/registration/registration_parameters.h>
 
-#include "common/parameter_check.h"
-
-#include <pcl_floam/map/neighbor_search.h>
 #include <pcl_floam/registration/registration_report.h>
 
 namespace pcl_floam {
@@ -15,11 +12,6 @@ const char* toString(WeightScheme scheme)
     case WeightScheme::printed: return "printed";
   }
   return "unknown";
-}
-
-const char* toString(WeightNormalization normalization)
-{
-  return normalization == WeightNormalization::mean_one ? "mean-one" : "sum-one";
 }
 
 const char* toString(RobustKernel kernel)
@@ -51,16 +43,6 @@ const char* toString(Termination termination)
     case Termination::invalid_input: return "the guess is not finite";
   }
   return "unknown";
-}
-
-void validate(const RegistrationParameters& p)
-{
-  const ParameterCheck check("registration");
-  check.range("max_iterations", p.max_iterations, 1, 1000);
-  check.above("max_neighbor_distance", p.max_neighbor_distance, 0.0);
-  check.above("edge_weight", p.edge_weight, 0.0);
-  check.range("max_features", p.max_features, 100, 1000000);
-  check.range("min_correspondences", p.min_correspondences, 6, 1000000);
 }
 
 }  // namespace pcl_floam

@@ -34,8 +34,7 @@ double medianVariance(const std::vector<Correspondence>& planes)
 
 }  // namespace
 
-std::vector<double> smoothnessWeights(const std::vector<Feature>& features, FeatureKind kind, WeightScheme scheme,
-                                      WeightNormalization normalization)
+std::vector<double> smoothnessWeights(const std::vector<Feature>& features, FeatureKind kind, WeightScheme scheme)
 {
   const double sign = exponentSign(kind, scheme);
   double largest = 0.0;  // exponents are taken relative to it: one far outlier's exp must not overflow
@@ -48,7 +47,8 @@ std::vector<double> smoothnessWeights(const std::vector<Feature>& features, Feat
     weights[i] = std::exp(sign * features[i].smoothness - largest);
     sum += weights[i];
   }
-  const double total = normalization == WeightNormalization::sum_one ? 1.0 : static_cast<double>(features.size());
+  const double each = kind == FeatureKind::edge ? kEdgeWeight : 1.0;
+  const double total = scheme == WeightScheme::printed ? 1.0 : each * static_cast<double>(features.size());
   for (double& weight : weights) {
     weight *= total / sum;
   }

@@ -74,8 +74,9 @@ std::vector<Eigen::Vector3d> planeQueries(const StageInput& input)
 
 void search(const NeighborSearch& layer, const std::vector<Eigen::Vector3d>& queries, std::vector<Neighbors>& found)
 {
-  const RegistrationParameters defaults;
-  layer.nearestOfEach(queries.data(), queries.size(), kFitNeighbors, defaults.max_neighbor_distance, found.data());
+  const RegistrationRun defaults;
+  layer.nearestOfEach(queries.data(), queries.size(), kFitNeighbors, defaults.max_correspondence_distance,
+                      found.data());
   gb::DoNotOptimize(found.data());
 }
 
@@ -98,7 +99,7 @@ void registerPointStages(const std::string& name, const SharedInput& input)
 {
   add(name, "every point read once", [input, out = std::vector<float>()]() mutable { readEveryPoint(*input, out); });
   add(name, "scan lines", [input, lines = ScanLines()]() mutable {
-    findScanLines(viewOf(input->scan), input->parameters.sensor, input->parameters.scan_line_source, lines);
+    findScanLines(viewOf(input->scan), input->parameters.sensor, ScanLineSource::automatic, lines);
   });
   add(name, "times", [input] { gb::DoNotOptimize(findScanTiming(viewOf(input->scan), input->lines)); });
   add(name, "smoothness (Eq. 1)", [input, line = LinePoints(), sigma = std::vector<float>()]() mutable {
@@ -213,12 +214,14 @@ void registerGrowth(const ScanSequence& sequence)
       extractFeatures(viewOf(input->scan), *lines, input->timing, input->parameters.features, out);
     });
   }
-  for (const int most : {250, 500, 1000, 2000, 4000}) {
-    RegistrationParameters parameters = input->parameters.registration;
-    parameters.max_features = most;
-    add("growth/registration by features", std::to_string(most), [input, target, parameters] {
-      gb::DoNotOptimize(registerFeatures(input->features, *target, runOf(*input), parameters));
-    });
+  for (const std::size_t part : {4U, 2U, 1U}) {
+    const auto features = std::make_shared<FeatureSet>(input->features);
+    features->edges.resize(features->edges.size() / part);
+    features->planes.resize(features->planes.size() / part);
+    add("growth/registration by features", std::to_string(features->edges.size() + features->planes.size()),
+        [input, target, features] {
+          gb::DoNotOptimize(registerFeatures(*features, *target, runOf(*input), input->parameters.registration));
+        });
   }
   for (const std::size_t scans : {10U, 30U, 100U}) {
     const auto from = sequence.scans.end() - static_cast<std::ptrdiff_t>(std::min(scans, sequence.scans.size()));

@@ -63,7 +63,7 @@ StageInput::StageInput(const ScanSequence& sequence)
   world_T_scan = report.world_T_sensor;
   twist = report.registration.sweep_twist;
   pcl::fromPCLPointCloud2(scan, *cloud);
-  findScanLines(viewOf(scan), parameters.sensor, parameters.scan_line_source, lines);
+  findScanLines(viewOf(scan), parameters.sensor, ScanLineSource::automatic, lines);
   timing = findScanTiming(viewOf(scan), lines);
   extractFeatures(viewOf(scan), lines, timing, parameters.features, features);
 }

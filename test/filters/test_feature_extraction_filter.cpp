@@ -152,7 +152,7 @@ TEST(FeatureExtractionFilter, NoScanLinesNoFeatures)
   EXPECT_FALSE(extraction.extract(features));
   EXPECT_EQ(extraction.getScanLines().failure, ScanLineFailure::empty_cloud);
   FeatureParameters parameters;
-  parameters.sectors = 0;
+  parameters.edges_per_sector = -1;
   EXPECT_THROW(extraction.setParameters(parameters), std::invalid_argument);
 }
 

@@ -23,12 +23,11 @@ Lidar smallLidar(bool clockwise = true, double start_azimuth = kPi)
   return lidar;
 }
 
-ScanTiming timingOf(const CloudView& cloud, ScanTimingSource source = ScanTimingSource::automatic,
-                    ScanRotation rotation = ScanRotation::automatic)
+ScanTiming timingOf(const CloudView& cloud, ScanTimingSource source = ScanTimingSource::automatic)
 {
   ScanLines lines;
   findScanLines(cloud, SensorModel(), ScanLineSource::automatic, lines);
-  return findScanTiming(cloud, lines, source, rotation);
+  return findScanTiming(cloud, lines, source);
 }
 
 /// Largest difference between the told and the true fraction of the sweep.
@@ -163,8 +162,7 @@ TEST(ScanTiming, AllThreadsFindTheSame)
   const auto cloud = cloudWithTimes<double>(returns, "timestamp", 1.7e9, 0.1);
   const ScanTiming one = timingOf(viewOf(cloud));
   for (const int threads : {2, 3, 30}) {
-    const ScanTiming timing =
-        findScanTiming(viewOf(cloud), {}, ScanTimingSource::automatic, ScanRotation::automatic, threads);
+    const ScanTiming timing = findScanTiming(viewOf(cloud), {}, ScanTimingSource::automatic, threads);
     EXPECT_EQ(timing.start, one.start);
     EXPECT_EQ(timing.duration, one.duration);
     EXPECT_EQ(timing.seconds_per_unit, one.seconds_per_unit);
@@ -257,7 +255,7 @@ TEST(ScanTiming, KittisFilesAreSweptClockwiseFromTheRear)
   }
   EXPECT_LT(worstError(timing, viewOf(cloud), returns), 0.006);
 
-  const ScanTiming told = timingOf(viewOf(cloud), ScanTimingSource::automatic, ScanRotation::counterclockwise);
+  const ScanTiming told = timingOf(viewOf(cloud), ScanTimingSource::counterclockwise);
   EXPECT_NEAR(told.at(viewOf(cloud), 100), 1.0 - timing.at(viewOf(cloud), 100), 1e-5);
 }
 
@@ -270,7 +268,7 @@ TEST(ScanTiming, ASortedCloudTellsNoTimeUnlessTheRotationIsGiven)
   const ScanTiming timing = timingOf(viewOf(cloud));
   EXPECT_EQ(timing.source, ScanTimingSource::none);
   EXPECT_EQ(timing.at(viewOf(cloud), 5), 1.0F);
-  const ScanTiming given = timingOf(viewOf(cloud), ScanTimingSource::azimuth, ScanRotation::clockwise);
+  const ScanTiming given = timingOf(viewOf(cloud), ScanTimingSource::clockwise);
   EXPECT_LT(worstError(given, viewOf(cloud), returns), 0.006);
 }
 

@@ -199,7 +199,7 @@ TEST(KeyframeVoxelMap, TakesAndGivesCloudsOfAnyPointType)
 TEST(KeyframeVoxelMap, SettingsOutOfRangeAreRefused)
 {
   MapParameters parameters;
-  parameters.edge_voxel_size = 0.0;
+  parameters.voxel_size = 0.0;
   EXPECT_THROW(KeyframeVoxelMap{parameters}, std::invalid_argument);
   parameters = {};
   parameters.horizon = std::numeric_limits<double>::quiet_NaN();
@@ -209,11 +209,11 @@ TEST(KeyframeVoxelMap, SettingsOutOfRangeAreRefused)
   EXPECT_THROW(KeyframeVoxelMap{parameters}, std::invalid_argument);
 }
 
+/// Half a metre, or a tenth of a radian.
 TEST(KeyframePolicy, TakesAScanAfterEitherThreshold)
 {
   KeyframePolicy policy;
   policy.translation = 0.5;
-  policy.rotation = 0.1;
   const SE3 last = exp((Vector6() << 5.0, 1.0, 0.0, 0.3, 0.0, 1.0).finished());
   const auto after = [&](double way, double turn) {
     return policy.isKeyframe(last, last * SE3(expSO3(Eigen::Vector3d(0.0, turn, 0.0)), Eigen::Vector3d(0.0, way, 0.0)));

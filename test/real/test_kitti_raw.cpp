@@ -58,7 +58,7 @@ TEST(KittiRaw0001, TrajectoryAgreesWithGroundTruth)
   EXPECT_LT(absoluteTrajectoryError(poses, truth).rms, 0.06);
   EXPECT_LT(kittiMetric(poses, truth, lengthsFor(pathLength(truth)), 1).translation, 0.45);
   EXPECT_LT(kittiMetric(poses, truth, {100.0}, 1).translation, 0.45);
-  EXPECT_EQ(odometry.report().timing_source, ScanTimingSource::azimuth);
+  EXPECT_EQ(odometry.report().timing_source, ScanTimingSource::clockwise);
 }
 
 /// KITTI's odometry benchmark undistorted its scans, and nothing in its files says so.

@@ -52,6 +52,7 @@ protected:
     run.factors = factors_;
     run.translation_epsilon *= precision_;
     run.rotation_epsilon *= precision_;
+    run.max_iterations = iterations_;
     return registerFeatures(scan_, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run,
                             parameters_);
   }
@@ -64,6 +65,7 @@ protected:
   KeyframeVoxelMap map_;
   RegistrationParameters parameters_;
   std::vector<PoseFactor::ConstPtr> factors_;
+  int iterations_ = 30;
   double precision_ = 1.0;  ///< of the convergence, in usual ones
 };
 
@@ -129,14 +131,10 @@ TEST_F(FeatureRegistrationTest, EverySchemeAndKernelRecoversIt)
 {
   mapRoom();
   for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted, WeightScheme::printed}) {
-    for (const WeightNormalization normalization : {WeightNormalization::mean_one, WeightNormalization::sum_one}) {
-      for (const RobustKernel kernel : {RobustKernel::huber, RobustKernel::cauchy, RobustKernel::geman_mcclure}) {
-        parameters_.weights = scheme;
-        parameters_.weight_normalization = normalization;
-        parameters_.kernel = kernel;
-        EXPECT_LT(distance(run(guess_).target_T_source, truth_), 0.02)
-            << toString(scheme) << ' ' << toString(normalization) << ' ' << toString(kernel);
-      }
+    for (const RobustKernel kernel : {RobustKernel::huber, RobustKernel::cauchy, RobustKernel::geman_mcclure}) {
+      parameters_.weights = scheme;
+      parameters_.kernel = kernel;
+      EXPECT_LT(distance(run(guess_).target_T_source, truth_), 0.02) << toString(scheme) << ' ' << toString(kernel);
     }
   }
 }
@@ -145,7 +143,7 @@ TEST_F(FeatureRegistrationTest, SolversAgree)
 {
   mapRoom();
   precision_ = 1e-6;
-  parameters_.max_iterations = 100;
+  iterations_ = 100;
   const RegistrationReport gauss_newton = run(guess_);
   parameters_.solver = SolverKind::ceres;
   const RegistrationReport ceres = run(guess_);
@@ -180,7 +178,7 @@ TEST_F(FeatureRegistrationTest, LockedDegreesOfFreedomKeepTheGuess)
 TEST_F(FeatureRegistrationTest, TooFewCorrespondencesInTheOnlyIterationAreNoSuccess)
 {
   mapRoom();
-  parameters_.max_iterations = 1;
+  iterations_ = 1;
   // Enough features that the first iteration looks at a part of them only.
   ASSERT_GE(scan_.edges.size() + scan_.planes.size(), 1000U);
   const SE3 guess(Eigen::Matrix3d::Identity(), Eigen::Vector3d(200.0, 0.0, 0.0));
@@ -231,7 +229,7 @@ TEST_F(FeatureRegistrationTest, AWideSearchBringsInAFarGuess)
 TEST_F(FeatureRegistrationTest, IterationLimitIsKept)
 {
   mapRoom();
-  parameters_.max_iterations = 1;
+  iterations_ = 1;
   const RegistrationReport report = run(guess_);
   EXPECT_EQ(report.termination, Termination::iteration_limit);
   EXPECT_EQ(report.iterations, 1);

@@ -271,12 +271,8 @@ TEST(RegistrationSettings, LockedDegreesOfFreedomKeepTheGuess)
 TEST(RegistrationSettings, TheNumberOfIterationsSetByIcpsSetterStays)
 {
   ObjectPair setup;
-  RegistrationParameters parameters;
-  parameters.max_iterations = 20;
-  setup.registration.setParameters(parameters);
-  EXPECT_EQ(setup.registration.getMaximumIterations(), 20);
   setup.registration.setMaximumIterations(1);
-  setup.registration.setParameters(parameters);
+  setup.registration.setParameters(RegistrationParameters());
   setup.align();
   EXPECT_EQ(setup.registration.report().iterations, 1);
 }

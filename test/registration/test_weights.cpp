@@ -28,21 +28,24 @@ const std::vector<float> kSmoothness = {0.01F, 0.3F, 1.7F, 0.05F};
 TEST(Weights, EachKindSumsToOneAsEquation9)
 {
   for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
-    for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted, WeightScheme::printed}) {
-      const auto one = smoothnessWeights(features(kSmoothness), kind, scheme, WeightNormalization::sum_one);
-      EXPECT_NEAR(sum(one), 1.0, 1e-12);
-      const auto mean = smoothnessWeights(features(kSmoothness), kind, scheme, WeightNormalization::mean_one);
-      EXPECT_NEAR(sum(mean), 4.0, 1e-12);
-    }
+    EXPECT_NEAR(sum(smoothnessWeights(features(kSmoothness), kind, WeightScheme::printed)), 1.0, 1e-12);
+  }
+}
+
+TEST(Weights, ElseEachFeatureHasItsSayHoweverManyThereAre)
+{
+  for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted}) {
+    EXPECT_NEAR(sum(smoothnessWeights(features(kSmoothness), FeatureKind::plane, scheme)), 4.0, 1e-12);
+    EXPECT_NEAR(sum(smoothnessWeights(features(kSmoothness), FeatureKind::edge, scheme)), 4.0 * kEdgeWeight, 1e-12);
   }
 }
 
 TEST(Weights, PrintedFormIsEquation9)
 {
   const auto edges =
-      smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::printed, WeightNormalization::sum_one);
+      smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::printed);
   const auto planes =
-      smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::printed, WeightNormalization::sum_one);
+      smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::printed);
   for (std::size_t i = 1; i < kSmoothness.size(); ++i) {
     const double step = kSmoothness[i] - kSmoothness[0];
     EXPECT_NEAR(edges[i] / edges[0], std::exp(-step), 1e-6);
@@ -52,33 +55,29 @@ TEST(Weights, PrintedFormIsEquation9)
 
 TEST(Weights, InvertedFormFavoursSharpEdgesAndFlatPlanes)
 {
-  const auto edges = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::edge, WeightScheme::inverted,
-                                       WeightNormalization::mean_one);
+  const auto edges = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::edge, WeightScheme::inverted);
   EXPECT_NEAR(edges[1] / edges[0], std::exp(0.7), 1e-6);
-  const auto planes = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::plane, WeightScheme::inverted,
-                                        WeightNormalization::mean_one);
+  const auto planes = smoothnessWeights(features({0.2F, 0.9F}), FeatureKind::plane, WeightScheme::inverted);
   EXPECT_NEAR(planes[1] / planes[0], std::exp(-0.7), 1e-6);
 }
 
 TEST(Weights, UniformOnesAreAllAlike)
 {
-  for (const double weight : smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::uniform,
-                                               WeightNormalization::mean_one)) {
+  for (const double weight : smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::uniform)) {
     EXPECT_DOUBLE_EQ(weight, 1.0);
   }
 }
 
 TEST(Weights, AFarOutlierDoesNotOverflow)
 {
-  const auto weights = smoothnessWeights(features({0.1F, 2000.0F}), FeatureKind::plane, WeightScheme::printed,
-                                         WeightNormalization::sum_one);
+  const auto weights = smoothnessWeights(features({0.1F, 2000.0F}), FeatureKind::plane, WeightScheme::printed);
   EXPECT_NEAR(weights[1], 1.0, 1e-12);
   EXPECT_NEAR(weights[0], 0.0, 1e-12);
 }
 
 TEST(Weights, NoFeaturesNoWeights)
 {
-  EXPECT_TRUE(smoothnessWeights({}, FeatureKind::edge, WeightScheme::printed, WeightNormalization::sum_one).empty());
+  EXPECT_TRUE(smoothnessWeights({}, FeatureKind::edge, WeightScheme::printed).empty());
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o result --solver magic", "gauss-newton|ceres"},
       {"scans -o result --solver ceres", "--engine features"},
       {"scans -o result --vertical-correction 90", "vertical_correction is 90"},
-      {"scans -o result --edge-voxel-size 0", "edge_voxel_size is 0"},
+      {"scans -o result --voxel-size 0", "voxel_size is 0"},
       {"scans -o result --ground-truth nowhere.txt", "nowhere.txt: cannot be read"},
       {"scans -o result --ground-truth short.txt", "1 poses for 8 scans"},
       {"scans -o result --ground-truth scans/0.bin", "0.bin: line 1"}};
@@ -239,9 +239,8 @@ TEST_F(OdometryTool, EveryChoiceRuns)
   for (const char* option :
        {"--engine features", "--compensation none", "--compensation loam", "--engine features --solver ceres",
         "--search kdtree", "--engine features --weights printed", "--engine features --weights inverted",
-        "--engine features --weight-normalization sum-one", "--engine features --kernel none", "--planar",
-        "--smoothness vector-sum", "--pose-instant start", "--threads 2", "--scan-lines elevation-clusters",
-        "--timing none", "--quiet"}) {
+        "--engine features --kernel none", "--planar", "--smoothness vector-sum", "--pose-instant start", "--threads 2",
+        "--timing counterclockwise", "--timing none", "--quiet"}) {
     const Outcome outcome = odometry(std::string("scans -o result --plot none --max-scans 3 ") + option);
     EXPECT_EQ(outcome.status, 0) << option << ": " << outcome.err;
     EXPECT_EQ(poses().size(), 3U) << option;

@@ -45,7 +45,6 @@ OdometryReport reportAt(double x, ScanTimingSource timing)
   OdometryReport report;
   report.world_T_sensor.translation.x() = x;
   report.timing_source = timing;
-  report.rotation = ScanRotation::clockwise;
   return report;
 }
 
@@ -83,7 +82,7 @@ TEST_F(ScanSaving, WaitsWhilePosesAreProvisional)
   save(saver, 0, first);
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "saved" / numberedName(0)));
   // The sensor moved by 2 m a scan, and the azimuth tells when.
-  OdometryReport second = reportAt(2.0, ScanTimingSource::azimuth);
+  OdometryReport second = reportAt(2.0, ScanTimingSource::clockwise);
   second.corrected_poses = {SE3()};
   save(saver, 1, second);
   saver.finish();

@@ -17,16 +17,14 @@ enum class SmoothnessKind : std::uint8_t {
 /// Settings of \ref FeatureExtraction.
 struct FeatureParameters {
   SmoothnessKind smoothness = SmoothnessKind::vector_sum;
-  int sectors = 6;             ///< parts of a scan line among which the features are spread; 1 to 64
-  int edges_per_sector = 4;    ///< most edges in one sector of one scan line; 0 to 100
-  int planes_per_sector = 20;  ///< most planes in one sector of one scan line; 0 to 1000
+  int edges_per_sector = 4;    ///< most edges in one sector, a sixth of a scan line; 0 to 100
+  int planes_per_sector = 20;  ///< most planes in one sector; 0 to 1000
   float min_range = 0.5F;      ///< m; nearer points are the robot itself. >= 0
   float max_range = 120.0F;    ///< m; > min_range
-  /// m; an edge needs a smoothness of more than this, above the range noise. Reasonable: 0.02 to 0.1
+  /// m; an edge needs a smoothness of more than this, above the range noise. By `vector_sum` it needs more than 0.35
+  /// times the mean distance to its neighbours as well: 0 on a line, 0.7 at a right-angled corner, 1 at the end of a
+  /// surface. Reasonable: 0.02 to 0.1
   float edge_threshold = 0.1F;
-  /// An edge needs a smoothness of more than this times the mean distance to its neighbours: 0 on a line,
-  /// 0.7 at a right-angled corner, 1 at the end of a surface.
-  float edge_bend = 0.35F;
   /// m; a plane needs a smoothness of less than this. Reasonable: 0.01 to 0.1
   float plane_threshold = 0.04F;
 };

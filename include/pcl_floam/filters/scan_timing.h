@@ -18,19 +18,18 @@ enum class ScanTimingSource : std::uint8_t {
   time_field,  ///< a field `time`, `t`, `timestamp`, ...: s, ms, us or ns, relative or absolute
   columns,     ///< the columns of an organised cloud: one column is one firing
   azimuth,     ///< the azimuth, with the direction of rotation told by the firing order, or by \ref Odometry's poses
+  clockwise,   ///< the azimuth, of a head that turns clockwise, seen from above (+z towards the viewer)
+  counterclockwise,
   none         ///< all points at the same instant: the scan is compensated already, or not rotating
 };
 
 [[nodiscard]] const char* toString(ScanTimingSource source);
 
-/// Sense of the head's rotation seen from above (+z towards the viewer).
-enum class ScanRotation : std::uint8_t { automatic, clockwise, counterclockwise };
-
 /// When each point was measured, as a fraction of the sweep.
 ///
 /// A model, not a list: times are computed only for the points that are asked for.
 struct ScanTiming {
-  ScanTimingSource source = ScanTimingSource::none;
+  ScanTimingSource source = ScanTimingSource::none;  ///< `azimuth` also where the rotation was given
   double start = 0.0;             ///< seconds, in the time field's own clock; 0 without one
   double duration = 0.0;          ///< seconds from fraction 0 to fraction 1; 0 where not known (one turn then)
   double seconds_per_unit = 1.0;  ///< of the time field
@@ -67,14 +66,12 @@ private:
 /// Without a time field, KITTI's convention is used for clouds in KITTI's file order, which does not show the
 /// firing order: the head turns clockwise, the sweep begins and ends at the rear.
 ///
-/// \param cloud    one scan in the sensor's frame
-/// \param lines    its scan lines; their order shows the direction of rotation
-/// \param source   `automatic`, or the one source to use
-/// \param rotation `automatic` to measure it, else the given one; used by source `azimuth` only
-/// \param threads  >= 1; the timing does not depend on it
+/// \param cloud   one scan in the sensor's frame
+/// \param lines   its scan lines; their order shows the direction of rotation
+/// \param source  `automatic`, or the one source to use
+/// \param threads >= 1; the timing does not depend on it
 /// \return a timing whose `source` is `none` when no time can be told
 [[nodiscard]] ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines,
-                                        ScanTimingSource source = ScanTimingSource::automatic,
-                                        ScanRotation rotation = ScanRotation::automatic, int threads = 1);
+                                        ScanTimingSource source = ScanTimingSource::automatic, int threads = 1);
 
 }  // namespace pcl_floam

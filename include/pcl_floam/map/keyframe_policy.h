@@ -8,10 +8,10 @@
 
 namespace pcl_floam {
 
-/// A scan becomes a keyframe when the sensor has moved by more than one of the thresholds since the last one.
+/// A scan becomes a keyframe when the sensor has moved by as much since the last one, or has turned so far that what is 5 m
+/// away has moved by as much: by default 0.1 rad.
 struct KeyframePolicy {
   double translation = 0.5;  ///< m, >= 0; 0 makes every scan a keyframe. Reasonable: 0.1 (indoors) to 2
-  double rotation = 0.1;     ///< rad, >= 0; reasonable: 0.05 to 0.3
 
   [[nodiscard]] bool isKeyframe(const SE3& last_keyframe, const SE3& pose) const;
 };

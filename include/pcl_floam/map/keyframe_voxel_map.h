@@ -28,9 +28,8 @@ enum class SearchMethod : std::uint8_t {
 
 /// Settings of \ref KeyframeVoxelMap.
 struct MapParameters {
-  double edge_voxel_size = 0.1;   ///< m, > 0: one map point per voxel. Reasonable: 0.05 to 0.5
-  double plane_voxel_size = 0.2;  ///< m, > 0. Reasonable: 0.1 to 1
-  double horizon = 150.0;         ///< m, > 0: points farther from the sensor are forgotten
+  double voxel_size = 0.2;  ///< m, > 0: one plane point per voxel; edges' are half as wide. Reasonable: 0.1 to 1
+  double horizon = 150.0;   ///< m, > 0: points farther from the sensor are forgotten
   /// m, >= 0: up to so far away, places that later scans see through are forgotten: cars and people that have gone.
   /// 0: never. Reasonable: 10 to 50
   double see_through_range = 40.0;

@@ -22,9 +22,7 @@ struct OdometryParameters {
   /// of a lidar without scan lines, which the engine `features` cannot; with `scan_lines` a scan without them is not
   /// tracked.
   ScanStructure structure = ScanStructure::automatic;
-  ScanLineSource scan_line_source = ScanLineSource::automatic;  ///< where scan lines come from
   ScanTimingSource timing_source = ScanTimingSource::automatic;
-  ScanRotation rotation = ScanRotation::automatic;
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the
   /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205.
   double vertical_correction = 0.0;

@@ -84,10 +84,9 @@ struct OdometryReport {
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
-  /// Where nothing tells which way the head turned, it is the azimuth, or none, whichever explains the scans better (by
+  /// Where nothing tells which way the head turned, it is clockwise, counterclockwise or none, whichever explains the scans better (by
   /// surfaces).
   ScanTimingSource timing_source = ScanTimingSource::none;
-  ScanRotation rotation = ScanRotation::automatic;  ///< of the head, where times are the azimuth's
   std::size_t points = 0;                           ///< points in the scan
   std::size_t edges = 0;                            ///< edge features extracted
   std::size_t planes = 0;                           ///< plane features extracted

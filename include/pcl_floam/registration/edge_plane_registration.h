@@ -102,10 +102,8 @@ public:
 
   EdgePlaneRegistration();
 
-  /// Where all points are registered, `kernel` and `locked` count; the others are about features. What
-  /// `setMaximumIterations` has set stays as it is.
-  /// \throws std::invalid_argument if a parameter is out of its range.
-  void setParameters(const RegistrationParameters& parameters);
+  /// Where all points are registered, `kernel` and `locked` count; the others are about features.
+  void setParameters(const RegistrationParameters& parameters) { parameters_ = parameters; }
   [[nodiscard]] const RegistrationParameters& getParameters() const { return parameters_; }
 
   /// Settings of the features that are extracted from clouds with scan lines.
@@ -169,7 +167,6 @@ private:
   [[nodiscard]] bool wantsPoints() const;
   [[nodiscard]] bool hasSearchOfItsOwn() const;
   [[nodiscard]] bool hasCriteriaOfItsOwn() const;
-  [[nodiscard]] RegistrationParameters featureRegistrationParameters() const;
   [[nodiscard]] int iterationLimit() const { return std::max(1, this->max_iterations_); }
   [[nodiscard]] RegistrationReport registerSource(const SE3& guess);
   [[nodiscard]] SE3 roughPose(const SE3& guess);

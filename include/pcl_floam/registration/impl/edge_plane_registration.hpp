@@ -36,7 +36,7 @@ const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>:
   if (!prepared_target_) {
     prepared_target_ = std::make_shared<Target>();
     const FeatureSet features = scanLineFeatures(viewOf(*this->target_), sensor_, feature_parameters_);
-    if (static_cast<int>(features.planes.size() + features.edges.size()) >= parameters_.min_correspondences) {
+    if (static_cast<int>(features.planes.size() + features.edges.size()) >= kFewestCorrespondences) {
       prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
       prepared_target_->features->insert(features, SE3());
     }
@@ -55,15 +55,6 @@ const PreparedCloud& EdgePlaneRegistration<PointSource, PointTarget, Scalar>::ta
         std::make_unique<PreparedCloud>(viewOf(*this->target_), std::vector<std::uint8_t>(), threads_);
   }
   return *prepared_target_->points;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-RegistrationParameters EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featureRegistrationParameters() const
-{
-  RegistrationParameters parameters = parameters_;
-  parameters.max_iterations = iterationLimit();
-  parameters.max_neighbor_distance = std::min(parameters.max_neighbor_distance, this->corr_dist_threshold_);
-  return parameters;
 }
 
 /// Where to start on the features, which must be near theirs already.
@@ -94,6 +85,8 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
   const KeyframeVoxelMap& map = *targetFeatures();
   RegistrationRun run;
   run.guess = roughPose(guess);
+  run.max_correspondence_distance = std::min(run.max_correspondence_distance, this->corr_dist_threshold_);
+  run.max_iterations = iterationLimit();
   run.threads = threads_;
   run.factors = factors_;
   if (this->transformation_epsilon_ > 0.0) {
@@ -109,7 +102,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     showIteration(target_T_source, nullptr);
   };
   const RegistrationReport report = registerFeatures(
-      source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, featureRegistrationParameters());
+      source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, parameters_);
   this->nr_iterations_ = report.iterations;
   this->transformation_ = (report.target_T_source * last.inverse()).template matrix<Scalar>();
   return report;

@@ -14,22 +14,12 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
 {
   this->reg_name_ = "EdgePlaneRegistration";
-  this->max_iterations_ = parameters_.max_iterations;
+  this->max_iterations_ = RegistrationRun().max_iterations;
   this->setSearchMethodTarget(pcl::make_shared<FiniteSearch<PointTarget>>());
   this->convergence_criteria_ =
       pcl::make_shared<FreshCriteria<Scalar>>(this->nr_iterations_, this->transformation_, *this->correspondences_);
   own_estimation_ = this->transformation_estimation_;
   own_correspondences_ = this->correspondence_estimation_;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setParameters(const RegistrationParameters& parameters)
-{
-  validate(parameters);
-  if (this->max_iterations_ == parameters_.max_iterations) {  // else setMaximumIterations has been called
-    this->max_iterations_ = parameters.max_iterations;
-  }
-  parameters_ = parameters;
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
