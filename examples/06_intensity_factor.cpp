@@ -2,7 +2,7 @@
 //
 //   ./06_intensity_factor SCANS
 // prints
-//   000019.pcd: tracked, at     1.25808 -0.00105192  0.00371405
+//   000019.pcd: tracked, at      1.25782 -0.000987106   0.00382442
 #include <map>
 #include "each_scan.h"
 

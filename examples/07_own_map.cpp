@@ -2,7 +2,7 @@
 //
 //   ./07_own_map SCANS
 // prints
-//   000019.pcd: tracked, at     1.30458  0.00380472 -0.00184691
+//   000019.pcd: tracked, at      1.31605 -0.00151517  0.00196819
 #include <pcl/filters/voxel_grid_covariance.h>
 #include "each_scan.h"
 
@@ -35,7 +35,7 @@ public:
     std::transform(places, places + count, surfaces, [this](const Eigen::Vector3d& place) -> pcl_floam::Surface {
       Eigen::Vector3f there = place.cast<float>();
       const auto* cell = empty() ? nullptr : cells_->getLeaf(there);
-      if (cell == nullptr || (cell->getMean() - place).norm() > kSide) {
+      if (cell == nullptr || cell->getPointCount() < 6 || (cell->getMean() - place).norm() > kSide) {
         return {};
       }
       const Eigen::Vector3d variances = cell->getEvals();  // rising

@@ -52,6 +52,13 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
       ->type_name("DEG,DEG,...")
       ->delimiter(',')
       ->excludes("--sensor");
+  app.add_option(
+         "--sensor-pose", o.sensor_pose,
+         "where the sensor is in the scans' frame, if that is not its\nown but a vehicle's: x,y,z,roll,pitch,yaw in m "
+         "and degrees;\nposes are the vehicle's")
+      ->type_name("X,Y,Z,R,P,Y")
+      ->delimiter(',')
+      ->expected(6);
   addNumber(app, "--scan-period", o.parameters.scan_period, "S",
             "time from scan to scan; 0 takes it from times.txt,\nand 0.1 s for time stamps without that file");
   addNumber(app, "--vertical-correction", o.parameters.vertical_correction, "DEG",
@@ -203,7 +210,8 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
 void addMapOptions(CLI::App& app, OdometryParameters& p)
 {
   app.option_defaults()->group("Map");
-  addNumber(app, "--keyframe-translation", p.keyframe.translation, "M", "a scan enters the map after this way,\nor a turn by which what is 5 m away moves so far");
+  addNumber(app, "--keyframe-translation", p.keyframe.translation, "M",
+            "a scan enters the map after this way,\nor a turn by which what is 5 m away moves so far");
   addNumber(app, "--voxel-size", p.map.voxel_size, "M",
             "one plane point is kept per voxel of this size; edges' are half as wide");
   addNumber(app, "--horizon", p.map.horizon, "M", "the map forgets what is farther from the sensor");

@@ -24,7 +24,8 @@ struct OdometryOptions {
   std::size_t from = 0;
   std::size_t max_scans = 0;  ///< 0: all
   std::string sensor = "auto";
-  std::vector<float> elevations;            ///< degrees; of a sensor of the user's own
+  std::vector<float> elevations;    ///< degrees; of a sensor of the user's own
+  std::vector<double> sensor_pose;  ///< x, y, z in m, roll, pitch, yaw in degrees; empty: scans are the sensor's
   std::optional<PoseInstant> pose_instant;  ///< nothing: what suits the format of the scans
   std::filesystem::path map;                ///< of an earlier run, to go on in; empty: none
   bool localize = false;                    ///< leave that map as it is

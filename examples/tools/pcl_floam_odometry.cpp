@@ -52,6 +52,17 @@ SE3 initialPose(const std::vector<double>& values)
   return pose;
 }
 
+/// \param values x, y, z in m and roll, pitch, yaw in degrees
+SE3 sensorPose(const std::vector<double>& values)
+{
+  SE3 pose;
+  pose.translation = Eigen::Vector3d(values[0], values[1], values[2]);
+  for (int axis = 2; axis >= 0; --axis) {  // roll is applied first
+    pose.rotation *= expSO3(values[static_cast<std::size_t>(3 + axis)] * M_PI / 180.0 * Eigen::Vector3d::Unit(axis));
+  }
+  return pose;
+}
+
 /// The map's files would be scans of the next run.
 void refuseToWriteAmong(const ScanSource& scans, const std::filesystem::path& output)
 {
@@ -93,6 +104,9 @@ struct Preparation {
     if (!options.ground_truth.empty()) {
       truth.emplace(options.ground_truth, calibratesLidar(options) ? "" : options.calibration, scans);
     }
+    if (!options.sensor_pose.empty()) {
+      odometry.setSensorPose(sensorPose(options.sensor_pose));
+    }
     if (!options.map.empty()) {
       odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
                           options.localize ? MapUse::frozen : MapUse::kept_current);
@@ -101,7 +115,7 @@ struct Preparation {
     if (!options.grid.empty()) {
       check(gridSettings(options));
     }
-    saver = ScanSaver(options.save_scans);
+    saver = ScanSaver(options.save_scans, odometry.sensorPose());
     writer = std::make_unique<ResultWriter>(options.output);
   }
 

@@ -3,6 +3,7 @@
 #include "result_writer.h"
 
 #include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/moved_cloud.h>
 #include <pcl_floam/filters/scan_lines.h>
 #include <pcl_floam/filters/scan_timing.h>
 #include <pcl_floam/filters/sweep_motion.h>
@@ -16,7 +17,8 @@
 
 namespace pcl_floam::tools {
 
-void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters)
+void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters,
+               const SE3& frame_T_sensor)
 {
   const CloudView view = viewOf(cloud);
   const SweepMotion motion(report.registration.sweep_twist, fractionOf(PoseInstant::middle),
@@ -24,12 +26,14 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
   if (motion.isStill() || parameters.compensation == CompensationMode::none) {
     return;
   }
+  MovedCloud moved_cloud;
+  const CloudView seen = moved_cloud.take(view, frame_T_sensor.inverse());
   ScanLines lines;
-  ScanTiming timing = findScanTiming(view, lines, report.timing_source);
+  ScanTiming timing = findScanTiming(seen, lines, report.timing_source);
   if (!timing.valid() && report.timing_source != ScanTimingSource::none &&
       parameters.structure != ScanStructure::space) {
-    findScanLines(view, parameters.sensor, ScanLineSource::automatic, lines);
-    timing = findScanTiming(view, lines, report.timing_source);
+    findScanLines(seen, parameters.sensor, ScanLineSource::automatic, lines);
+    timing = findScanTiming(seen, lines, report.timing_source);
   }
   if (!timing.valid()) {
     return;
@@ -38,7 +42,7 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
   std::vector<float> moved(3 * view.size);  // the view reads what is written below
   for (std::size_t i = 0; i < view.size; ++i) {
     const Eigen::Vector3d point(view.x(i), view.y(i), view.z(i));
-    const Eigen::Vector3f there = ((reference_T_middle * motion.at(timing.at(view, i))) * point).cast<float>();
+    const Eigen::Vector3f there = ((reference_T_middle * motion.at(timing.at(seen, i))) * point).cast<float>();
     std::memcpy(&moved[3 * i], there.data(), 3 * sizeof(float));
   }
   for (std::size_t i = 0; i < view.size; ++i) {
@@ -65,7 +69,8 @@ void prepareScanFolder(const std::filesystem::path& folder)
   }
 }
 
-ScanSaver::ScanSaver(std::filesystem::path folder) : folder_(std::move(folder))
+ScanSaver::ScanSaver(std::filesystem::path folder, const SE3& frame_T_sensor)
+    : folder_(std::move(folder)), frame_T_sensor_(frame_T_sensor)
 {
   if (!folder_.empty()) {
     prepareScanFolder(folder_);
@@ -106,7 +111,7 @@ void ScanSaver::correct(std::size_t scan, const OdometryReport& report)
 void ScanSaver::writeWaiting()
 {
   for (Waiting& one : waiting_) {
-    undistort(one.cloud, one.report, one.parameters);
+    undistort(one.cloud, one.report, one.parameters, frame_T_sensor_);
     writePcd(one.cloud, folder_ / numberedName(one.scan));
   }
   waiting_.clear();

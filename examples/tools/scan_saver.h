@@ -15,7 +15,9 @@ namespace pcl_floam::tools {
 
 /// Re-expresses every point at the instant that the poses describe, where the sensor's motion is known. Times that the
 /// points had are then no longer theirs, and go; other fields stay.
-void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters);
+/// \param frame_T_sensor where the sensor is in the cloud's frame
+void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const OdometryParameters& parameters,
+               const SE3& frame_T_sensor = {});
 
 /// The folder, created if need be, in which scans are written: those of two runs could not be told apart.
 /// \throws FileError if it cannot be created or is not empty.
@@ -27,7 +29,8 @@ void prepareScanFolder(const std::filesystem::path& folder);
 class ScanSaver {
 public:
   /// \param folder as \ref prepareScanFolder wants it; empty: nothing is written
-  explicit ScanSaver(std::filesystem::path folder);
+  /// \param frame_T_sensor where the sensor is in the scans' frame
+  explicit ScanSaver(std::filesystem::path folder, const SE3& frame_T_sensor = {});
 
   /// \param time s, of the pose
   /// \throws FileError if the file cannot be written.
@@ -49,6 +52,7 @@ private:
   void writeWaiting();
 
   std::filesystem::path folder_;
+  SE3 frame_T_sensor_;
   std::vector<double> times_;
   std::vector<Waiting> waiting_;
 };

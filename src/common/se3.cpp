@@ -91,6 +91,13 @@ Matrix6 adjoint(const SE3& t)
   return a;
 }
 
+Matrix6 leverOf(const Eigen::Vector3d& arm)
+{
+  Matrix6 lever = Matrix6::Identity();
+  lever.topRightCorner<3, 3>() = skew(arm);
+  return lever;
+}
+
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m)
 {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -114,8 +114,7 @@ struct FeatureOdometry : OdometryRun {
 
   [[nodiscard]] bool hasEnoughFeatures() const
   {
-    return static_cast<int>(scan.features.edges.size() + scan.features.planes.size()) >=
-           kFewestCorrespondences;
+    return static_cast<int>(scan.features.edges.size() + scan.features.planes.size()) >= kFewestCorrespondences;
   }
 
   /// The map begins with the first scan.

@@ -1,5 +1,6 @@
 #include "common/parameter_check.h"
 #include "odometry/feature_odometry.h"
+#include "odometry/sensor_frame.h"
 #include "odometry/surface_odometry.h"
 
 #include <pcl_floam/odometry/odometry.h>
@@ -49,8 +50,9 @@ void validate(const OdometryParameters& p)
 struct OdometryPipeline::Impl {
   using Engine = std::variant<FeatureOdometry, SurfaceOdometry>;
 
-  Impl(const OdometryParameters& p, const OdometryComponents& c)
-      : engine(p.engine == OdometryEngine::surfaces ? Engine(SurfaceOdometry(p, c)) : Engine(FeatureOdometry(p, c)))
+  Impl(const OdometryParameters& p, const OdometryComponents& c, SensorFrame f = SensorFrame())
+      : frame(std::move(f)),
+        engine(p.engine == OdometryEngine::surfaces ? Engine(SurfaceOdometry(p, c)) : Engine(FeatureOdometry(p, c)))
   {
   }
 
@@ -61,25 +63,43 @@ struct OdometryPipeline::Impl {
     return std::visit(visitor, engine);
   }
 
+  /// What both have in common.
+  [[nodiscard]] OdometryRun& of()
+  {
+    return visit([](auto& odometry) -> OdometryRun& { return odometry; });
+  }
+
+  /// Anew, at a pose of the frame.
+  [[nodiscard]] std::unique_ptr<Impl> again(const OdometryComponents& c, SensorFrame f, const SE3& world_T_frame)
+  {
+    auto other = std::make_unique<Impl>(OdometryParameters(of().parameters), OdometryComponents(c), std::move(f));
+    other->of().initial_pose = other->of().report.world_T_sensor = other->frame.ofSensor(world_T_frame);
+    other->frame.tell(other->of().report);
+    return other;
+  }
+
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
-    visit([&](auto& odometry) { odometry.track(scan, stamp); });
-    return noteEngine();
+    visit([&](auto& odometry) { odometry.track(frame.ofSensor(scan), stamp); });
+    return noteReport();
   }
 
   const OdometryReport& miss(std::optional<double> stamp)
   {
     visit([&](auto& odometry) { odometry.miss(stamp); });
-    return noteEngine();
+    return noteReport();
   }
 
+  SensorFrame frame;
+
 private:
-  const OdometryReport& noteEngine()
+  const OdometryReport& noteReport()
   {
-    OdometryReport& report = visit([](auto& odometry) -> OdometryReport& { return odometry.report; });
+    OdometryReport& report = of().report;
     report.engine =
         std::holds_alternative<SurfaceOdometry>(engine) ? OdometryEngine::surfaces : OdometryEngine::features;
-    return report;
+    frame.tell(report);
+    return frame.report(report);
   }
 
   Engine engine;
@@ -115,7 +135,7 @@ const OdometryReport& OdometryPipeline::trackMissing(std::optional<double> stamp
 void OdometryPipeline::setMotionHint(const MotionHint& hint)
 {
   hint.validate();
-  impl_->visit([&](auto& odometry) { odometry.hint.give(hint); });
+  impl_->of().hint.give(impl_->frame.ofSensor(hint));
 }
 
 void OdometryPipeline::setPose(const SE3& world_T_sensor)
@@ -123,12 +143,12 @@ void OdometryPipeline::setPose(const SE3& world_T_sensor)
   if (!world_T_sensor.isFinite()) {
     throw std::invalid_argument("the pose that is set is not finite");
   }
-  impl_->visit([&](auto& odometry) { odometry.setPose(world_T_sensor); });
+  impl_->visit([&](auto& odometry) { odometry.setPose(impl_->frame.ofSensor(world_T_sensor)); });
 }
 
 const OdometryReport& OdometryPipeline::report() const
 {
-  return impl_->visit([](auto& odometry) -> const OdometryReport& { return odometry.report; });
+  return impl_->frame.report(impl_->of().report);
 }
 
 SE3 OdometryPipeline::pose() const
@@ -138,12 +158,12 @@ SE3 OdometryPipeline::pose() const
 
 const KeyframeVoxelMap& OdometryPipeline::map() const
 {
-  return impl_->visit([](auto& odometry) -> const KeyframeVoxelMap& { return odometry.map_building.map(); });
+  return impl_->of().map_building.map();
 }
 
 const OdometryParameters& OdometryPipeline::parameters() const
 {
-  return impl_->visit([](auto& odometry) -> const OdometryParameters& { return odometry.parameters; });
+  return impl_->of().parameters;
 }
 
 void OdometryPipeline::localizeIn(KeyframeVoxelMap map, const SE3& world_T_sensor, MapUse use)
@@ -160,11 +180,7 @@ void OdometryPipeline::reset(const SE3& world_T_sensor)
   if (!world_T_sensor.isFinite()) {
     throw std::invalid_argument("the pose to begin with is not finite");
   }
-  impl_ = std::make_unique<Impl>(OdometryParameters(parameters()), OdometryComponents(components()));
-  impl_->visit([&](auto& odometry) {
-    odometry.initial_pose = world_T_sensor;
-    odometry.report.world_T_sensor = world_T_sensor;
-  });
+  impl_ = impl_->again(components(), impl_->frame, world_T_sensor);
 }
 
 void OdometryPipeline::setComponents(const OdometryComponents& components)
@@ -176,12 +192,25 @@ void OdometryPipeline::setComponents(const OdometryComponents& components)
   if (parameters().engine == OdometryEngine::features && (components.map || components.select_points)) {
     throw std::invalid_argument("odometry: the engine 'features' registers features with its own map");
   }
-  impl_ = std::make_unique<Impl>(OdometryParameters(parameters()), components);
+  impl_ = impl_->again(components, impl_->frame, SE3());
+}
+
+void OdometryPipeline::setSensorPose(const SE3& frame_T_sensor)
+{
+  if (!frame_T_sensor.isFinite()) {
+    throw std::invalid_argument("the sensor's pose is not finite");
+  }
+  impl_ = impl_->again(components(), SensorFrame(frame_T_sensor), SE3());
+}
+
+const SE3& OdometryPipeline::sensorPose() const
+{
+  return impl_->frame.pose();
 }
 
 const OdometryComponents& OdometryPipeline::components() const
 {
-  return impl_->visit([](auto& odometry) -> const OdometryComponents& { return odometry.components; });
+  return impl_->of().components;
 }
 
 }  // namespace pcl_floam

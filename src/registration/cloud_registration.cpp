@@ -31,14 +31,6 @@ constexpr double kAlongOfFew = 0.05;
 /// Whoever asks for fewer iterations than this wants to see them one by one.
 constexpr int kFewestForCoarse = 4;
 
-/// A perturbation (t, w) about a point is (t + arm x w, w) about one that lies \p arm nearer.
-Matrix6 leverOf(const Eigen::Vector3d& arm)
-{
-  Matrix6 lever = Matrix6::Identity();
-  lever.topRightCorner<3, 3>() = skew(arm);
-  return lever;
-}
-
 class Registration {
 public:
   Registration(const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run)

@@ -14,20 +14,20 @@ namespace {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
 
-/// Smoothness of the features of each scan line, in the order of the features.
-std::map<int, std::vector<float>> smoothnessByLine(const Cloud& cloud, const std::vector<Feature>& features)
+/// The features of each scan line, in their order.
+std::map<int, std::vector<Feature>> byLine(const Cloud& cloud, const std::vector<Feature>& features)
 {
-  std::map<int, std::vector<float>> lines;
+  std::map<int, std::vector<Feature>> lines;
   for (const Feature& feature : features) {
-    lines[cloud[static_cast<std::size_t>(feature.index)].ring].push_back(feature.smoothness);
+    lines[cloud[static_cast<std::size_t>(feature.index)].ring].push_back(feature);
   }
   return lines;
 }
 
 /// Of each line those that are chosen where each sector may have one, and all that could have been, sector by sector.
 struct Choice {
-  std::map<int, std::vector<float>> best;
-  std::map<int, std::vector<float>> all;
+  std::map<int, std::vector<Feature>> best;
+  std::map<int, std::vector<Feature>> all;
 };
 
 Choice choiceOf(FeatureKind kind)
@@ -38,7 +38,7 @@ Choice choiceOf(FeatureKind kind)
     parameters.edges_per_sector = edges;
     parameters.planes_per_sector = planes;
     const FeatureSet features = featuresOf(cloud, parameters);
-    return smoothnessByLine(cloud, kind == FeatureKind::edge ? features.edges : features.planes);
+    return byLine(cloud, kind == FeatureKind::edge ? features.edges : features.planes);
   };
   return kind == FeatureKind::edge ? Choice{chosen(1, 0), chosen(100, 0)} : Choice{chosen(0, 1), chosen(0, 1000)};
 }
@@ -48,15 +48,15 @@ TEST(FeatureSelection, AnEdgeIsTheSharpestOfItsSector)
   const Choice choice = choiceOf(FeatureKind::edge);
   ASSERT_GT(choice.all.size(), 20U);
   for (const auto& [line, all] : choice.all) {
-    const std::vector<float>& best = choice.best.at(line);
+    const std::vector<Feature>& best = choice.best.at(line);
     EXPECT_LE(best.size(), 6U);
     std::size_t sectors = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (sectors < best.size() && all[i] == best[sectors]) {
+      if (sectors < best.size() && all[i].index == best[sectors].index) {
         ++sectors;
       } else {
         ASSERT_GT(sectors, 0U) << "line " << line;
-        EXPECT_LE(all[i], all[i - 1]) << "line " << line;
+        EXPECT_LE(all[i].smoothness, all[i - 1].smoothness) << "line " << line;
       }
     }
     EXPECT_EQ(sectors, best.size()) << "line " << line;
@@ -68,14 +68,14 @@ TEST(FeatureSelection, APlaneIsTheSmoothestOfItsCell)
   const Choice choice = choiceOf(FeatureKind::plane);
   ASSERT_GT(choice.all.size(), 20U);
   for (const auto& [line, all] : choice.all) {
-    const std::vector<float>& best = choice.best.at(line);
+    const std::vector<Feature>& best = choice.best.at(line);
     EXPECT_LE(best.size(), 6U);
     std::size_t sector = 0;
-    for (const float smoothness : all) {
-      const float last = best[std::min(sector, best.size() - 1)];
-      const float before = sector > 0 ? best[sector - 1] : last;
-      EXPECT_GE(smoothness, std::min(before, last)) << "line " << line;
-      sector += sector < best.size() && smoothness == best[sector] ? 1U : 0U;
+    for (const Feature& plane : all) {
+      const float next = best[std::min(sector, best.size() - 1)].smoothness;
+      const float before = sector > 0 ? best[sector - 1].smoothness : next;
+      EXPECT_GE(plane.smoothness, std::min(before, next)) << "line " << line;
+      sector += sector < best.size() && plane.index == best[sector].index ? 1U : 0U;
     }
     EXPECT_EQ(sector, best.size()) << "line " << line;
   }

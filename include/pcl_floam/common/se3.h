@@ -78,6 +78,9 @@ struct SE3 {
 /// How a perturbation in the source's axes looks in the target's: t exp(xi) = exp(adjoint(t) xi) t.
 [[nodiscard]] Matrix6 adjoint(const SE3& t);
 
+/// A perturbation (t, w) about a point is (t + arm x w, w) about one that lies \p arm nearer.
+[[nodiscard]] Matrix6 leverOf(const Eigen::Vector3d& arm);
+
 /// The nearest proper rotation (in the Frobenius norm) to a matrix that rounding has bent.
 [[nodiscard]] Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m);
 

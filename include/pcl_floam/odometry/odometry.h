@@ -43,7 +43,7 @@ public:
   ~OdometryPipeline();
 
   /// Takes the next scan. Never throws for data: the report tells what came of it.
-  /// \param scan  one sweep in the sensor's frame
+  /// \param scan  one sweep in the sensor's frame, or that of \ref setSensorPose
   /// \param stamp seconds, any epoch, of the same instant of every sweep; without it scans are taken to
   ///              follow each other at a constant period
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp = std::nullopt);
@@ -65,6 +65,15 @@ public:
   /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees
   /// \throws std::invalid_argument for a pose that is not finite
   void setPose(const SE3& world_T_sensor);
+
+  /// Where the sensor is in the frame that clouds are given in, where that is not its own: a vehicle's. From where a
+  /// point was measured matters to scan lines, times, ranges and what is seen through. All poses, hints and the sweep's
+  /// motion that are given and taken are then that frame's; what else `report().registration` tells, and what objects of
+  /// one's own are told, is the sensor's. Forgets map and motion.
+  ///
+  /// \throws std::invalid_argument for a pose that is not finite
+  void setSensorPose(const SE3& frame_T_sensor);
+  [[nodiscard]] const SE3& sensorPose() const;
 
   /// Objects of one's own in place of the odometry's, or beside them. Forgets map and motion; \ref reset and
   /// \ref localizeIn keep them.

@@ -57,7 +57,7 @@ struct OdometryReport {
   /// was missing, and where the sensor has come to rest; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
   /// The sensor stands still, as far as poses that are `tracked` tell: ten of them differed by noise alone, and none
-  /// has been far from their mean since (four times the usual step). `world_T_sensor` is that mean, and those since it
+  /// has been farther from their mean since than noise leads once in an hour. `world_T_sensor` is that mean, and those since it
   /// came to rest are corrected to it once. What moves by less than the noise from scan to scan is taken for rest until
   /// it has led out of it.
   bool at_rest = false;

@@ -1,0 +1,24 @@
+#include <pcl_floam/common/moved_cloud.h>
+
+namespace pcl_floam {
+
+CloudView MovedCloud::take(const CloudView& cloud, const SE3& target_T_source)
+{
+  bytes_.assign(cloud.data, cloud.data + cloud.size * cloud.stride);
+  for (std::size_t i = 0; i < cloud.size; ++i) {
+    const Eigen::Vector3d point(cloud.x(i), cloud.y(i), cloud.z(i));
+    if (point.isZero(0.0)) {
+      continue;  // no return, whatever the frame
+    }
+    const Eigen::Vector3f there = (target_T_source * point).cast<float>();
+    std::uint8_t* bytes = bytes_.data() + i * cloud.stride;
+    std::memcpy(bytes + cloud.x_offset, &there.x(), sizeof(float));
+    std::memcpy(bytes + cloud.y_offset, &there.y(), sizeof(float));
+    std::memcpy(bytes + cloud.z_offset, &there.z(), sizeof(float));
+  }
+  CloudView moved = cloud;
+  moved.data = bytes_.data();
+  return moved;
+}
+
+}  // namespace pcl_floam

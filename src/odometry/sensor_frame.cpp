@@ -1,0 +1,38 @@
+#include "odometry/sensor_frame.h"
+
+namespace pcl_floam {
+
+SensorFrame::SensorFrame(const SE3& frame_T_sensor)
+    : frame_T_sensor_(frame_T_sensor), sensor_T_frame_(frame_T_sensor.inverse()), is_sensors_own_(false)
+{
+}
+
+CloudView SensorFrame::ofSensor(const CloudView& cloud)
+{
+  return is_sensors_own_ ? cloud : cloud_.take(cloud, sensor_T_frame_);
+}
+
+MotionHint SensorFrame::ofSensor(const MotionHint& hint) const
+{
+  const Matrix6 turned = adjoint(sensor_T_frame_);
+  return {sensor_T_frame_ * hint.last_T_now * frame_T_sensor_, turned * hint.covariance * turned.transpose()};
+}
+
+void SensorFrame::tell(const OdometryReport& of_sensor)
+{
+  if (is_sensors_own_) {
+    return;
+  }
+  const Matrix6 turned = adjoint(frame_T_sensor_);
+  const Matrix6 lever = leverOf(-(of_sensor.world_T_sensor.rotation * sensor_T_frame_.translation));
+  report_ = of_sensor;
+  report_.world_T_sensor = of_sensor.world_T_sensor * sensor_T_frame_;
+  report_.covariance = lever * of_sensor.covariance * lever.transpose();
+  for (SE3& pose : report_.corrected_poses) {
+    pose = pose * sensor_T_frame_;
+  }
+  report_.registration.sweep_twist = turned * of_sensor.registration.sweep_twist;
+  report_.registration.sweep_acceleration = turned * of_sensor.registration.sweep_acceleration;
+}
+
+}  // namespace pcl_floam
