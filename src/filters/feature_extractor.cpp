@@ -124,8 +124,7 @@ private:
     }
     // Where returns are missing, a straight line's neighbours are nearer on one side: its sum is long, but along it.
     const float across = meanDifferenceAcross(line_.points, n, neighbors_);
-    return isBesideDepthStep(line_.points, n) ||
-           across > kAcross * std::max(line_.edge_threshold, kBend * distance);
+    return isBesideDepthStep(line_.points, n) || across > kAcross * std::max(line_.edge_threshold, kBend * distance);
   }
 
   /// The smoothest point of each of the sector's cells: low smoothness, and evenly spread.

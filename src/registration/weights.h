@@ -17,8 +17,8 @@ namespace pcl_floam {
 /// corridors and roads there is little else.
 inline constexpr double kEdgeWeight = 0.12;
 
-/// W(p) of every feature of one kind (Eq. 9). But as printed they sum up to the features' number, or to \ref kEdgeWeight
-/// times that of the edges: residuals keep their units, and each feature its say.
+/// W(p) of every feature of one kind (Eq. 9). But as printed they sum up to the features' number, or to \ref
+/// kEdgeWeight times that of the edges: residuals keep their units, and each feature its say.
 [[nodiscard]] std::vector<double> smoothnessWeights(const std::vector<Feature>& features, FeatureKind kind,
                                                     WeightScheme scheme);
 

@@ -42,10 +42,8 @@ TEST(Weights, ElseEachFeatureHasItsSayHoweverManyThereAre)
 
 TEST(Weights, PrintedFormIsEquation9)
 {
-  const auto edges =
-      smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::printed);
-  const auto planes =
-      smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::printed);
+  const auto edges = smoothnessWeights(features(kSmoothness), FeatureKind::edge, WeightScheme::printed);
+  const auto planes = smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::printed);
   for (std::size_t i = 1; i < kSmoothness.size(); ++i) {
     const double step = kSmoothness[i] - kSmoothness[0];
     EXPECT_NEAR(edges[i] / edges[0], std::exp(-step), 1e-6);

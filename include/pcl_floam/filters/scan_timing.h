@@ -20,7 +20,7 @@ enum class ScanTimingSource : std::uint8_t {
   azimuth,     ///< the azimuth, with the direction of rotation told by the firing order, or by \ref Odometry's poses
   clockwise,   ///< the azimuth, of a head that turns clockwise, seen from above (+z towards the viewer)
   counterclockwise,
-  none         ///< all points at the same instant: the scan is compensated already, or not rotating
+  none  ///< all points at the same instant: the scan is compensated already, or not rotating
 };
 
 [[nodiscard]] const char* toString(ScanTimingSource source);
@@ -30,7 +30,7 @@ enum class ScanTimingSource : std::uint8_t {
 /// A model, not a list: times are computed only for the points that are asked for.
 struct ScanTiming {
   ScanTimingSource source = ScanTimingSource::none;  ///< `azimuth` also where the rotation was given
-  double start = 0.0;             ///< seconds, in the time field's own clock; 0 without one
+  double start = 0.0;                                ///< seconds, in the time field's own clock; 0 without one
   double duration = 0.0;          ///< seconds from fraction 0 to fraction 1; 0 where not known (one turn then)
   double seconds_per_unit = 1.0;  ///< of the time field
   double start_azimuth = 0.0;     ///< rad; source `azimuth`: where the sweep begins

@@ -8,8 +8,8 @@
 
 namespace pcl_floam {
 
-/// A scan becomes a keyframe when the sensor has moved by as much since the last one, or has turned so far that what is 5 m
-/// away has moved by as much: by default 0.1 rad.
+/// A scan becomes a keyframe when the sensor has moved by as much since the last one, or has turned so far that what is
+/// 5 m away has moved by as much: by default 0.1 rad.
 struct KeyframePolicy {
   double translation = 0.5;  ///< m, >= 0; 0 makes every scan a keyframe. Reasonable: 0.1 (indoors) to 2
 

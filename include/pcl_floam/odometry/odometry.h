@@ -68,8 +68,8 @@ public:
 
   /// Where the sensor is in the frame that clouds are given in, where that is not its own: a vehicle's. From where a
   /// point was measured matters to scan lines, times, ranges and what is seen through. All poses, hints and the sweep's
-  /// motion that are given and taken are then that frame's; what else `report().registration` tells, and what objects of
-  /// one's own are told, is the sensor's. Forgets map and motion.
+  /// motion that are given and taken are then that frame's; what else `report().registration` tells, and what objects
+  /// of one's own are told, is the sensor's. Forgets map and motion.
   ///
   /// \throws std::invalid_argument for a pose that is not finite
   void setSensorPose(const SE3& frame_T_sensor);

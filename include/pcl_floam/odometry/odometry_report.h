@@ -57,9 +57,9 @@ struct OdometryReport {
   /// was missing, and where the sensor has come to rest; for whoever keeps the trajectory. Empty otherwise.
   std::vector<SE3> corrected_poses;
   /// The sensor stands still, as far as poses that are `tracked` tell: ten of them differed by noise alone, and none
-  /// has been farther from their mean since than noise leads once in an hour. `world_T_sensor` is that mean, and those since it
-  /// came to rest are corrected to it once. What moves by less than the noise from scan to scan is taken for rest until
-  /// it has led out of it.
+  /// has been farther from their mean since than noise leads once in an hour. `world_T_sensor` is that mean, and those
+  /// since it came to rest are corrected to it once. What moves by less than the noise from scan to scan is taken for
+  /// rest until it has led out of it.
   bool at_rest = false;
   /// By surfaces: part of the registered points, 0 to 1, that lie where the map has them, to three standard deviations.
   /// Less than half is `doubtful`.
@@ -84,13 +84,13 @@ struct OdometryReport {
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
-  /// Where nothing tells which way the head turned, it is clockwise, counterclockwise or none, whichever explains the scans better (by
-  /// surfaces).
+  /// Where nothing tells which way the head turned, it is clockwise, counterclockwise or none, whichever explains the
+  /// scans better (by surfaces).
   ScanTimingSource timing_source = ScanTimingSource::none;
-  std::size_t points = 0;                           ///< points in the scan
-  std::size_t edges = 0;                            ///< edge features extracted
-  std::size_t planes = 0;                           ///< plane features extracted
-  bool keyframe = false;                            ///< the scan was added to the map
+  std::size_t points = 0;  ///< points in the scan
+  std::size_t edges = 0;   ///< edge features extracted
+  std::size_t planes = 0;  ///< plane features extracted
+  bool keyframe = false;   ///< the scan was added to the map
   RegistrationReport registration;
   StageTimes milliseconds;
 };

@@ -101,8 +101,8 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     last = target_T_source;
     showIteration(target_T_source, nullptr);
   };
-  const RegistrationReport report = registerFeatures(
-      source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, parameters_);
+  const RegistrationReport report =
+      registerFeatures(source, {&map.search(FeatureKind::edge), &map.search(FeatureKind::plane)}, run, parameters_);
   this->nr_iterations_ = report.iterations;
   this->transformation_ = (report.target_T_source * last.inverse()).template matrix<Scalar>();
   return report;
