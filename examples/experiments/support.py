@@ -54,7 +54,7 @@ class Options:
         if self.arguments.bin == build / "bin" and not all((build / "bin" / tool).exists() for tool in wanted):
             log("building the tools in " + str(build))
             subprocess.run(["cmake", "-S", HERE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
-                            "-DPCL_FLOAM_BUILD_TESTS=OFF"], check=True, stdout=subprocess.DEVNULL)
+                            "-DCMAKE_UNITY_BUILD=ON", "-DPCL_FLOAM_BUILD_TESTS=OFF"], check=True, stdout=subprocess.DEVNULL)
             subprocess.run(["cmake", "--build", build, "--target"] + wanted, check=True, stdout=sys.stderr)
 
     def tool(self, name):

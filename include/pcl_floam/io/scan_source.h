@@ -82,8 +82,10 @@ struct ScanSourceOptions {
 class ScanSource {
 public:
   /// Lists the scans. Reads none yet, but the first of a recording's messages, which tells whether its topic holds
-  /// scans. \param topic of a recording with several: which; of a pcap the sender, as address:port \throws FileError if
-  /// the input cannot be read, holds no scans or several kinds of them, has several topics of scans
+  /// scans.
+  ///
+  /// \param topic of a recording with several: which; of a pcap the sender, as address:port
+  /// \throws FileError if the input cannot be read, holds no scans or several kinds of them, has several topics of scans
   ///         and none is named, or if `times.txt` has a line that is no number or does not fit the number of scans.
   explicit ScanSource(const std::filesystem::path& input, const std::string& topic = "");
 

@@ -43,7 +43,9 @@ public:
   void write(const StampedPose& pose);
 
   /// Puts \p poses in place of all that was written; goes on after them. The file that was there stays until the new
-  /// one is whole. \throws FileError if it cannot be replaced.
+  /// one is whole.
+  ///
+  /// \throws FileError if it cannot be replaced.
   void writeAgain(const Trajectory& poses);
 
 private:

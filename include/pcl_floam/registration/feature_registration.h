@@ -46,8 +46,9 @@ struct RegistrationRun {
 /// distances (Eq. 10), with fresh correspondences in every iteration, until it converges.
 ///
 /// Of the source's planes 1000 are taken, evenly, and a sixth as many edges. Never throws for data; the report tells
-/// what came of it. Bit-identical for every number of threads. \param source features in the sensor's frame, distorted
-/// by the motion that `run.sweep` describes
+/// what came of it. Bit-identical for every number of threads.
+///
+/// \param source features in the sensor's frame, distorted by the motion that `run.sweep` describes
 [[nodiscard]] RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarget& target,
                                                   const RegistrationRun& run, const RegistrationParameters& parameters);
 
