@@ -16,14 +16,14 @@ Vector6 commonUnits(const NormalEquations& equations)
 
 Matrix6 netInformation(const NormalEquations& equations, const Matrix6& information)
 {
-  using Square6 = Eigen::Matrix<double, 6, 6>;
   if (!(equations.squared_extent > 0.0)) {
     return information;
   }
   const Vector6 scale = commonUnits(equations);
-  const Square6 net = information - equations.noise_information - equations.chance_information;
-  const Eigen::SelfAdjointEigenSolver<Square6> solver(scale.asDiagonal() * net * scale.asDiagonal());
-  const Square6 axes = scale.cwiseInverse().asDiagonal() * solver.eigenvectors();
+  using Square = Eigen::Matrix<double, 6, 6>;
+  const Square net = information - equations.noise_information - equations.chance_information;
+  const Eigen::SelfAdjointEigenSolver<Square> solver(scale.asDiagonal() * net * scale.asDiagonal());
+  const Square axes = scale.cwiseInverse().asDiagonal() * solver.eigenvectors();
   return axes * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * axes.transpose();
 }
 

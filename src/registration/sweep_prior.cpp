@@ -7,7 +7,6 @@ namespace pcl_floam {
 
 Matrix12 SweepPrior::information() const
 {
-  using Square6 = Eigen::Matrix<double, 6, 6>;
   constexpr double kLeastVariance = 1e-12;
   const Square6 pose_covariance = covariance.topLeftCorner<6, 6>() + kLeastVariance * Matrix6::Identity();
   const Square6 common = covariance.topRightCorner<6, 6>();
