@@ -23,12 +23,12 @@ constexpr double kOpen = 0.05;
 Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotation,
                              const std::optional<MotionHint>& hint)
 {
-  using Square6 = Eigen::Matrix<double, 6, 6>;
-  Square6 covariance = told;
+  using Square = Eigen::Matrix<double, 6, 6>;
+  Square covariance = told;
   if (hint) {
-    Square6 turn = Square6::Zero();
+    Square turn = Square::Zero();
     turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;
-    const Square6 both = covariance + turn * Square6(hint->covariance) * turn.transpose();
+    const Square both = covariance + turn * Square(hint->covariance) * turn.transpose();
     covariance -= covariance * both.ldlt().solve(covariance);
   }
   return covariance.topLeftCorner<3, 3>();

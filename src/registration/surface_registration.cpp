@@ -29,6 +29,7 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
+using Square6 = Eigen::Matrix<double, 6, 6>;
 using Square12 = Eigen::Matrix<double, 12, 12>;
 using Column12 = Eigen::Matrix<double, 12, 1>;
 

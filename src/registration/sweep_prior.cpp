@@ -7,16 +7,17 @@ namespace pcl_floam {
 
 Matrix12 SweepPrior::information() const
 {
+  using Square = Eigen::Matrix<double, 6, 6>;
   constexpr double kLeastVariance = 1e-12;
-  const Square6 pose_covariance = covariance.topLeftCorner<6, 6>() + kLeastVariance * Matrix6::Identity();
-  const Square6 common = covariance.topRightCorner<6, 6>();
-  const Square6 gain = pose_covariance.ldlt().solve(common).transpose();
-  const Square6 rest = covariance.bottomRightCorner<6, 6>() - gain * common + kLeastVariance * Square6::Identity();
-  const Square6 known = rest.inverse();
+  const Square pose_covariance = covariance.topLeftCorner<6, 6>() + kLeastVariance * Matrix6::Identity();
+  const Square common = covariance.topRightCorner<6, 6>();
+  const Square gain = pose_covariance.ldlt().solve(common).transpose();
+  const Square rest = covariance.bottomRightCorner<6, 6>() - gain * common + kLeastVariance * Square::Identity();
+  const Square known = rest.inverse();
   Matrix12 information;
   information << gain.transpose() * known * gain, -gain.transpose() * known, -known * gain, known;
   information.topLeftCorner<6, 6>() +=
-      pose_counts ? Square6(pose_covariance.inverse()) : Square6(kNothingKnown * Square6::Identity());
+      pose_counts ? Square(pose_covariance.inverse()) : Square(kNothingKnown * Square::Identity());
   return information;
 }
 

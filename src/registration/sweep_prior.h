@@ -6,8 +6,6 @@
 
 namespace pcl_floam {
 
-/// For computations within a function: as Eigen aligns it.
-using Square6 = Eigen::Matrix<double, 6, 6>;
 using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
 using Vector12 = Eigen::Matrix<double, 12, 1, Eigen::DontAlign>;
 
