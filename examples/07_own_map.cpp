@@ -34,7 +34,7 @@ public:
   {
     std::transform(places, places + count, surfaces, [this](const Eigen::Vector3d& place) -> pcl_floam::Surface {
       Eigen::Vector3f there = place.cast<float>();
-      const auto* cell = empty() ? nullptr : cells_->getLeaf(there);
+      const auto* cell = empty() || !place.allFinite() ? nullptr : cells_->getLeaf(there);
       if (cell == nullptr || cell->getPointCount() < 6 || (cell->getMean() - place).norm() > kSide) {
         return {};
       }

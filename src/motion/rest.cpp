@@ -1,5 +1,6 @@
 #include "motion/rest.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
@@ -21,27 +22,36 @@ bool Rest::Scatter::isFar(const Eigen::Vector3d& from_mean, int poses) const
 
 void Rest::Scatter::add(const Eigen::Vector3d& step)
 {
+  if (count_ < first_.size()) {
+    first_[count_] = step.squaredNorm();
+  }
+  ++count_;
   squares_ += step.squaredNorm();
   products_ += step.dot(last_);
   last_ = step;
 }
 
 /// Steps of white noise have a correlation of -1/2 with the ones before, those of a steady motion of 1; a single jump
-/// has none.
+/// has none. What outdoes the usual step a hundredfold in its square is no noise, and would make any scatter look
+/// small.
 bool Rest::Scatter::isNoise() const
 {
   constexpr double kUndone = 0.1;
+  constexpr double kOutstanding = 100.0;
   constexpr double kRounding = 1e-16;  // m^2 or rad^2
-  return products_ <= kRounding - kUndone * squares_;
+  std::array<double, kMostPoses> sorted = first_;
+  const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
+  std::sort(sorted.begin(), end);
+  const double usual = sorted[static_cast<std::size_t>(end - sorted.begin()) / 2];
+  return products_ <= kRounding - kUndone * squares_ && *(end - 1) <= kOutstanding * usual + kRounding;
 }
 
 void Rest::take(const SE3& pose)
 {
   constexpr int kFewest = 10;  // poses: noise of fewer looks like motion, and slow motion like noise
-  constexpr int kMost = 20;    // poses: the sensor may have come to rest among them
   const Eigen::Vector3d from_mean = pose.translation - mean_.translation;
   const Eigen::Vector3d turned = logSO3(pose.rotation * mean_.rotation.transpose());
-  const bool begins_again = !is_at_rest_ && poses_ == kMost;
+  const bool begins_again = !is_at_rest_ && poses_ == kMostPoses;
   if (poses_ == 0 || begins_again || position_.isFar(from_mean, poses_) || rotation_.isFar(turned, poses_)) {
     *this = Rest();
     poses_ = 1;

@@ -4,6 +4,9 @@
 
 #include <pcl_floam/common/se3.h>
 
+#include <array>
+#include <cstddef>
+
 namespace pcl_floam {
 
 /// At rest, poses differ by the noise of their registration alone: a step from one to the next is undone by later ones,
@@ -21,6 +24,8 @@ public:
   [[nodiscard]] const SE3& pose() const { return mean_; }
 
 private:
+  static constexpr int kMostPoses = 20;  // if these are no rest, the sensor may have come to it among them
+
   /// Of one half of a pose, the position or the rotation, by vectors in the world's axes, m or rad.
   class Scatter {
   public:
@@ -30,8 +35,10 @@ private:
 
   private:
     Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
-    double squares_ = 0.0;   // of the steps
-    double products_ = 0.0;  // of each step with the one before
+    std::array<double, kMostPoses> first_{};  // squares of the first steps
+    std::size_t count_ = 0;                   // of the steps
+    double squares_ = 0.0;                    // of the steps
+    double products_ = 0.0;                   // of each step with the one before
   };
 
   int poses_ = 0;

@@ -200,6 +200,11 @@ void OdometryPipeline::setSensorPose(const SE3& frame_T_sensor)
   if (!frame_T_sensor.isFinite()) {
     throw std::invalid_argument("the sensor's pose is not finite");
   }
+  const DegreesOfFreedom& locked = parameters().registration.locked;
+  const bool any = std::any_of(locked.begin(), locked.end(), [](bool is_locked) { return is_locked; });
+  if (any && rotationAngle(frame_T_sensor.rotation) > 0.0) {
+    throw std::invalid_argument("locked degrees of freedom are the sensor's: its axes must be those of the frame");
+  }
   impl_ = impl_->again(components(), SensorFrame(frame_T_sensor), SE3());
 }
 

@@ -178,7 +178,7 @@ struct SurfaceOdometry : OdometryRun {
   {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
-    } else if (direction() < 0.0) {  // of the azimuth's times alone
+    } else if (direction() < 0.0 && report.timing_source != ScanTimingSource::none) {  // those of a scan, by azimuth
       report.timing_source = report.timing_source == ScanTimingSource::clockwise ? ScanTimingSource::counterclockwise
                                                                                  : ScanTimingSource::clockwise;
       report.registration.sweep_twist = -report.registration.sweep_twist;

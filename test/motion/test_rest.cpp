@@ -125,6 +125,20 @@ TEST(Rest, NoiseHardlyEverEndsIt)
   EXPECT_LT(ended, 3.0 * kChance * kRuns * kFew);
 }
 
+TEST(Rest, AnOutlierDoesNotHideTheMotionAfterIt)
+{
+  for (std::uint32_t seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    Rest rest;
+    for (int scan = 0; scan < kScans; ++scan) {
+      const double way = scan == 5 ? 100.0 : std::max(0, scan - 15) * 5.0;  // noises
+      const SE3 pose = standing(0) * SE3(Eigen::Matrix3d::Identity(), {way * kNoise, 0.0, 0.0});
+      rest.take(noisy(pose, random, kNoise));
+      EXPECT_FALSE(rest.isAtRest()) << seed << ' ' << scan;
+    }
+  }
+}
+
 TEST(Rest, EndsAsSoonAsAPoseIsFarOff)
 {
   std::mt19937 random(3);

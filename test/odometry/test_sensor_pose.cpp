@@ -126,6 +126,9 @@ TEST(SensorPose, ACopyAndAnIdentityChangeNothing)
   SE3 nowhere;
   nowhere.translation.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(told.setSensorPose(nowhere), std::invalid_argument);
+  OdometryParameters planar = defaults();
+  planar.registration.locked = kPlanarMotion;
+  EXPECT_THROW(Odometry<pcl::PointXYZ>(planar).setSensorPose(kVehicleFromSensor), std::invalid_argument);
 }
 
 TEST(MovedCloud, MovesPointsAndKeepsWhatIsNone)
@@ -141,6 +144,12 @@ TEST(MovedCloud, MovesPointsAndKeepsWhatIsNone)
   EXPECT_NEAR(view.z(0), there.z(), 1e-5);
   EXPECT_EQ(view.ring.read(view.point(0)), 5.0);
   EXPECT_EQ(view.x(1), 0.0F);
+  const pcl::PointXYZ place(static_cast<float>(kVehicleFromSensor.translation.x()),
+                            static_cast<float>(kVehicleFromSensor.translation.y()),
+                            static_cast<float>(kVehicleFromSensor.translation.z()));
+  pcl::PointCloud<pcl::PointXYZ> carried;  // no return, as a driver that moves clouds gives it
+  carried.push_back(place);
+  EXPECT_EQ(moved.take(viewOf(carried), kVehicleFromSensor.inverse()).x(0), 0.0F);
   EXPECT_EQ(cloud[0].x, 1.0F);
 }
 

@@ -85,8 +85,8 @@ public:
   /// scans.
   ///
   /// \param topic of a recording with several: which; of a pcap the sender, as address:port
-  /// \throws FileError if the input cannot be read, holds no scans or several kinds of them, has several topics of scans
-  ///         and none is named, or if `times.txt` has a line that is no number or does not fit the number of scans.
+  /// \throws FileError if the input cannot be read, holds no scans or several kinds of them, has several topics and
+  /// none is named, or if `times.txt` has a line that is no number or does not fit the number of scans.
   explicit ScanSource(const std::filesystem::path& input, const std::string& topic = "");
 
   /// The same with more to know.

@@ -71,7 +71,7 @@ public:
   /// motion that are given and taken are then that frame's; what else `report().registration` tells, and what objects
   /// of one's own are told, is the sensor's. Forgets map and motion.
   ///
-  /// \throws std::invalid_argument for a pose that is not finite
+  /// \throws std::invalid_argument for a pose that is not finite, or that is turned where degrees of freedom are locked
   void setSensorPose(const SE3& frame_T_sensor);
   [[nodiscard]] const SE3& sensorPose() const;
 
