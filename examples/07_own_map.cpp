@@ -9,6 +9,7 @@
 class NdtMap : public pcl_floam::SurfaceMap {
   using Cells = pcl::VoxelGridCovariance<pcl::PointXYZ>;
   static constexpr float kSide = 1.0F;  // m
+  static constexpr int kFewest = 6;     // points of a plane; more are not surer, as a cell so wide is not flat
   pcl::PointCloud<pcl::PointXYZ> points_;
   std::shared_ptr<Cells> cells_;
 
@@ -35,15 +36,16 @@ public:
     std::transform(places, places + count, surfaces, [this](const Eigen::Vector3d& place) -> pcl_floam::Surface {
       Eigen::Vector3f there = place.cast<float>();
       const auto* cell = empty() || !place.allFinite() ? nullptr : cells_->getLeaf(there);
-      if (cell == nullptr || cell->getPointCount() < 6 || (cell->getMean() - place).norm() > kSide) {
+      if (cell == nullptr || cell->getPointCount() < kFewest || (cell->getMean() - place).norm() > kSide) {
         return {};
       }
       const Eigen::Vector3d variances = cell->getEvals();  // rising
       const auto kind =
           variances[0] < 0.05 * variances[1] ? pcl_floam::SurfaceKind::plane : pcl_floam::SurfaceKind::point;
       const double thickness = kind == pcl_floam::SurfaceKind::plane ? variances[0] : variances[2];
-      return {kind, cell->getMean(), cell->getEvecs().col(0), Eigen::Matrix3d::Identity(), thickness, variances[1], 6,
-              kSide};
+      return {
+          kind, cell->getMean(), cell->getEvecs().col(0), Eigen::Matrix3d::Identity(), thickness, variances[1], kFewest,
+          kSide};
     });
   }
 };

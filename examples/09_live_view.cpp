@@ -57,7 +57,7 @@ try {
     }
     show(viewer, scan, Colour(scan, 255, 80, 60), "scan", 1.0);
     show(viewer, path, Colour(path, 60, 255, 90), "path", 4.0);
-    const Eigen::Vector3d& at = report.world_T_sensor.translation;  // seen from a kite behind it
+    const Eigen::Vector3d& at = report.world_T_sensor.translation;  // as a kite sees it
     viewer.setCameraPosition(at.x() - 15.0, at.y(), at.z() + 25.0, at.x(), at.y(), at.z(), 0.0, 0.0, 1.0);
     viewer.spinOnce(1, true);
   }
