@@ -86,6 +86,8 @@ CellFit fitOf(const CellSums& sums, SurfaceShapes shapes)
     shape.direction = single(eigen.eigenvectors().col(0));
     shape.thickness = static_cast<float>(variance[0]);
     shape.extent = static_cast<float>(variance[1]);
+    const std::array<float, 3> wide = single(eigen.eigenvectors().col(2));
+    fit.axes = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
   } else {
     fit.kind = SurfaceKind::point;
     Eigen::Map<Eigen::Matrix3f>(fit.axes.data()) = eigen.eigenvectors().cast<float>();

@@ -41,7 +41,9 @@ struct CellShape {
 struct CellFit {
   SurfaceKind kind = SurfaceKind::unknown;
   CellShape shape;
-  std::array<float, 9> axes{};  ///< of what is neither plane nor line: its principal directions, one after the other
+  /// Of what is neither plane nor line, its principal directions, one after the other; of a plane its longer direction
+  /// and the variance along that.
+  std::array<float, 9> axes{};
 };
 
 /// A shape that chance or the sampling pattern of a single laser would give is none.

@@ -118,6 +118,10 @@ void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Su
   surface.direction = Eigen::Vector3f(shape.direction.data()).cast<double>();
   surface.thickness = static_cast<double>(shape.thickness);
   surface.extent = static_cast<double>(shape.extent);
+  if (fit.kind == SurfaceKind::plane) {
+    surface.wide = Eigen::Vector3f(fit.axes.data()).cast<double>();
+    surface.width = static_cast<double>(fit.axes[3]);
+  }
 }
 
 /// Which displacements are felt among the points of a cell.

@@ -81,7 +81,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.reach = reachOf({far, kTurnPerMetre * far});
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
-    problem.wants_evidence = problem.looks_for_weak = round + 1 == look.rounds;
+    problem.wants_evidence = round + 1 == look.rounds;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;
@@ -171,6 +171,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   SurfaceProblem problem = problemFor(sweep);
   problem.wants_evidence = rivals != Rivals::none;
   if (rivals == Rivals::motions) {
+    problem.is_rival = true;
     problem.open = open_;
     problem.reach *= kLook * kLook;
   }

@@ -1,8 +1,12 @@
 /// \file net_information.h
-/// What residuals tell of a pose, less what noise would tell as well.
+/// What residuals tell of a pose beyond what noise would tell as well.
 #pragma once
 
 #include "registration/normal_equations.h"
+
+#include <pcl_floam/registration/registration_report.h>
+
+#include <vector>
 
 namespace pcl_floam {
 
@@ -10,9 +14,32 @@ namespace pcl_floam {
 /// \param equations of some points that are not all at the local origin
 [[nodiscard]] Vector6 commonUnits(const NormalEquations& equations);
 
-/// An information matrix less what the noise of normals and lines and the chance of few points make of it, no less than
-/// nothing along any direction: what follows from noise moves along with the sensor, and says that it stands still.
-/// \param information of \p equations, or what is left of it
-[[nodiscard]] Matrix6 netInformation(const NormalEquations& equations, const Matrix6& information);
+/// Equations in which a motion counts by the share of its information that is none of noise's. Noise moves along with
+/// the sensor, and says that it stands still.
+///
+/// With the axes that information and noise have in common, H v = lambda v' and noise mu v': with the share s = 1 - mu,
+/// or none if noise may be all, the true motion d makes b = s lambda d in the mean, not lambda d (errors in variables;
+/// Fuller 1987), with the variance lambda. So s b is what a motion tells against what is known otherwise, s^2 lambda is
+/// how well; and while points keep their surfaces s b changes by s lambda. A share of 0 leaves out an axis (solution
+/// remapping after Zhang, Kaess and Singh, 2016).
+struct NetEquations {
+  NormalEquations steps;  ///< s lambda and s b: what a step is made from
+  NormalEquations known;  ///< s^2 lambda and s b: what is known then
+
+  NetEquations& operator+=(const NetEquations& other);
+};
+
+[[nodiscard]] NetEquations withoutNoise(const NormalEquations& equations);
+
+/// Motions of which residuals tell next to nothing.
+struct UntoldMotions {
+  Matrix6 onto = Matrix6::Zero();  ///< projects a motion on them, at right angles in common units
+  std::vector<WeakDirection> directions;
+};
+
+/// \param net     what is left of \p all without noise
+/// \param besides information from elsewhere: what it tells of is not named as a direction
+[[nodiscard]] UntoldMotions untoldMotions(const NormalEquations& net, const NormalEquations& all,
+                                          const Matrix6& besides = Matrix6::Zero());
 
 }  // namespace pcl_floam

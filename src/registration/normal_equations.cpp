@@ -90,7 +90,6 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other)
 {
   information += other.information;
   noise_information += other.noise_information;
-  chance_information += other.chance_information;
   coupling += other.coupling;
   twist_information += other.twist_information;
   gradient += other.gradient;

@@ -4,7 +4,6 @@
 #include "registration/surface_residuals.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -48,16 +47,10 @@ public:
   SurfaceRegistration run()
   {
     SurfaceRegistration result;
-    SurfaceSums sums = iterate(result.report);
-    if (problem_.looks_for_weak && result.report.hasConverged() && findWeakDirections(sums.equations)) {
-      pose_ = problem_.prior.pose;
-      velocity_ = problem_.prior.velocity;
-      sums = iterate(result.report);
-    }
-    conclude(result, sums);
+    conclude(result, iterate(result.report));
     if (problem_.wants_evidence && result.report.hasConverged()) {
       weighs_evidence_ = true;
-      result.evidence = accumulate(0.0, 1).evidence;
+      result.evidence = accumulate(0.0, 1).total().evidence;
     }
     return result;
   }
@@ -71,7 +64,7 @@ private:
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
       const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);
-      sums = accumulate(look, all ? 1 : kFirstStride);
+      sums = told(accumulate(look, all ? 1 : kFirstStride));
       report.iterations = i + 1;
       const Column12 step = sums.equations.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
       if (sums.equations.count() < kFewest) {
@@ -111,12 +104,11 @@ private:
     report.point_correspondences = sums.equations.points;
     report.plane_inliers = sums.equations.plane_inliers;
     report.information = strong_.transpose() * sums.equations.information * strong_;
-    const Matrix6 net = netInformation(sums.equations, report.information);
-    result.told = told(net / kResidualsBesideMotion + besides().information);
+    result.told = covarianceBy(report.information / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
     report.residual_rms =
         sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;
-    result.posterior = posteriorOf(sums);
+    result.posterior = posterior();
     report.covariance = result.posterior.topLeftCorner<6, 6>();
     result.velocity = velocity_;
     result.points =
@@ -130,7 +122,7 @@ private:
   }
 
   /// Of the pose, whatever was expected.
-  [[nodiscard]] Matrix6 told(const Matrix6& information) const
+  [[nodiscard]] Matrix6 covarianceBy(const Matrix6& information) const
   {
     Square6 known = information;
     known.diagonal().array() += kNothingKnown;
@@ -138,9 +130,9 @@ private:
     return withoutLocked(Square6(known.inverse()));
   }
 
-  [[nodiscard]] Square12 posteriorOf(const SurfaceSums& sums) const
+  [[nodiscard]] Square12 posterior() const
   {
-    const Equations equations = equationsOf(sums);
+    const Equations equations = equationsOf(known_);
     return withoutLocked(Square12(equations.information.inverse()));
   }
 
@@ -171,37 +163,29 @@ private:
 
   [[nodiscard]] bool isLocked(int i) const { return problem_.locked[static_cast<std::size_t>(i % 6)]; }
 
-  /// Those along which no more is told than noise of the planes' normals would, so that it follows the sensor wherever
-  /// it goes. Along them the pose is left to the prior (solution remapping after Zhang and Singh, 2016). They are
-  /// eigenvectors of H itself, unlike InformationAnalysis's: without them H says exactly nothing of what is not seen.
-  /// Chance is not asked: what lines and points hold by a little is better followed than left to the prior.
-  bool findWeakDirections(const NormalEquations& e)
+  /// What points and edges tell, each beyond their noise: neither hides what the other tells. Along a motion of which
+  /// they tell next to nothing the pose is left to the prior, and so it is not corrected by what is seen of others: how
+  /// far the sensor has gone unseen is known worse than in which direction, and that worse than where the walls are.
+  /// The first motion has no prior that it could be left to.
+  SurfaceSums told(const SweepSums& sums)
   {
-    constexpr double kNothing = 1e-6;  // of residuals that tell of the direction alone
-    if (!(e.squared_extent > 0.0)) {
-      return false;
+    SurfaceSums told = sums.total();
+    known_ = told.equations;
+    if (!problem_.prior.pose_counts) {
+      return told;
     }
-    const Vector6 scale = commonUnits(e);
-    const auto scaled = [&](const Matrix6& m) {
-      return Square6(scale.asDiagonal() * m * scale.asDiagonal() / e.weight);
-    };
-    const Square6 noise = scaled(e.noise_information);
-    const Square6 besides = scaled(kResidualsBesideMotion * this->besides().information);
-    const Eigen::SelfAdjointEigenSolver<Square6> solver(scaled(e.information));
-    Square6 strong = Square6::Identity();
-    for (int i = 0; i < 6; ++i) {
-      const Eigen::Matrix<double, 6, 1> direction = solver.eigenvectors().col(i);
-      const double told = std::max(0.0, solver.eigenvalues()[i]);
-      const double noise_along = direction.dot(noise * direction) + kNothing;
-      if (told < noise_along) {
-        strong -= direction * direction.transpose();
-        if (direction.dot(besides * direction) < noise_along) {  // else somebody tells of it
-          weak_.push_back({direction, told});
-        }
-      }
+    NetEquations net = withoutNoise(sums.scan.equations);
+    net += withoutNoise(sums.edges.equations);
+    const UntoldMotions untold =
+        untoldMotions(net.steps, told.equations, kResidualsBesideMotion * besides().information);
+    if (!problem_.is_rival) {
+      told.equations = net.steps;
+      known_ = net.known;
     }
-    strong_ = scale.asDiagonal() * strong * scale.cwiseInverse().asDiagonal();
-    return strong != Square6(Square6::Identity());
+    strong_ = Square6::Identity() - Square6(untold.onto);
+    weak_ = untold.directions;
+    prior_ = problem_.prior.apartFrom(untold.onto).information();
+    return told;
   }
 
   [[nodiscard]] Vector6 twist() const { return problem_.prior.fraction * placingVelocity(); }
@@ -220,7 +204,7 @@ private:
                                        : Vector6(Vector6::Zero());
   }
 
-  [[nodiscard]] SurfaceSums accumulate(double look, std::size_t stride)
+  [[nodiscard]] SweepSums accumulate(double look, std::size_t stride)
   {
     SurfaceResiduals residuals{MovingSensor(pose_, twist(), acceleration())};
     residuals.reach = look * look * problem_.reach;
@@ -238,9 +222,8 @@ private:
   };
 
   /// Of pose and velocity: what the residuals say, as so many independent ones, and what was known before.
-  [[nodiscard]] Equations equationsOf(const SurfaceSums& sums) const
+  [[nodiscard]] Equations equationsOf(const NormalEquations& e) const
   {
-    const NormalEquations& e = sums.equations;
     const auto cleaned = [&](const Matrix6& m) { return Square6(strong_.transpose() * m * strong_); };
     const Column12 off = problem_.prior.offset(pose_, velocity_);
     Equations equations;
@@ -263,7 +246,7 @@ private:
 
   [[nodiscard]] Column12 stepOf(const SurfaceSums& sums) const
   {
-    const Equations equations = equationsOf(sums);
+    const Equations equations = equationsOf(sums.equations);
     return -equations.information.ldlt().solve(equations.gradient);
   }
 
@@ -275,6 +258,7 @@ private:
   bool weighs_evidence_ = false;
   std::vector<SurfaceSums> own_parts_;
   std::vector<SurfaceSums>& parts_;
+  NormalEquations known_;  // of the last iteration
   std::vector<WeakDirection> weak_;
   Square6 strong_ = Square6::Identity();  // projects on all other directions
 };

@@ -41,7 +41,9 @@ struct SurfaceProblem {
   bool wants_evidence = false;   ///< else the result has none
   /// Along which the poses whose evidence is compared differ, a unit vector in the sensor's axes; zero: anyhow.
   Eigen::Vector3d open = Eigen::Vector3d::Zero();
-  bool looks_for_weak = true;  ///< directions that the scan does not tell of
+  /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
+  /// only what they do not tell is left to the prior.
+  bool is_rival = false;
   int max_iterations = 12;
   int threads = 1;
   std::vector<struct SurfaceSums>* room = nullptr;  ///< memory that may be used again; nullptr: there is none

@@ -29,19 +29,14 @@ constexpr double kNoExtent = 1e-9;
 constexpr std::size_t kPointsPerChunk = 64;
 static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
 
-/// What a direction that is off by \p variance in all directions makes of H: v A A^T with A = (1, arm x); the upper
-/// half.
-void addNoise(double variance, const Eigen::Vector3d& arm, Matrix6& noise)
+/// What a normal or a line's direction that is off along \p tilt adds to H: t t^T with the row t = (tilt, arm x tilt);
+/// the upper half.
+void addNoise(const Eigen::Vector3d& tilt, const Eigen::Vector3d& arm, Matrix6& noise)
 {
-  const Eigen::Vector3d turned = variance * arm;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const Eigen::Index next = (i + 1) % 3;
-    const Eigen::Index last = (i + 2) % 3;
-    noise(i, i) += variance;
-    noise(i, 3 + next) += turned[last];
-    noise(i, 3 + last) -= turned[next];
-    noise(3 + i, 3 + i) += variance * (arm.squaredNorm() - arm[i] * arm[i]);
-    noise(3 + std::min(i, next), 3 + std::max(i, next)) -= variance * (arm[i] * arm[next]);
+  Eigen::Matrix<double, 6, 1> row;
+  row << tilt, arm.cross(tilt);
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    noise.row(i).tail(6 - i) += row[i] * row.tail(6 - i).transpose();
   }
 }
 
@@ -87,8 +82,8 @@ void SurfaceSums::add(const SurfaceSums& other)
   evidence += other.evidence;
 }
 
-SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                     std::vector<SurfaceSums>& parts) const
+SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
+                                   std::vector<SurfaceSums>& parts) const
 {
   const std::size_t of_scan = chunksOf(scan, stride);
   parts.resize(of_scan + chunksOf(edges, 1));
@@ -98,9 +93,7 @@ SurfaceSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm&
     parts[c] = c < of_scan ? chunkOf(scan, c, stride) : chunkOf(edges, c - of_scan, 1);
   }
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
-  SurfaceSums sums = totalOf(parts.begin(), middle);
-  sums.add(totalOf(middle, parts.end()));
-  return sums;
+  return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
 SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const
@@ -139,7 +132,6 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   }
   rows.addTo(sums.equations);
   mirrorUpperHalf(sums.equations.noise_information);
-  mirrorUpperHalf(sums.equations.chance_information);
   return sums;
 }
 
@@ -159,8 +151,11 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double w = weight(r * r, variance, plane.direction, p, along_open * along_open, sums);
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
-  const double noise = plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count;
-  addNoise(w * noise / (plane.count * extent), p.arm, sums.equations.noise_information);
+  const double noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
+  const bool is_wide = plane.width > 0.0;
+  const Eigen::Vector3d wide = is_wide ? plane.wide : Eigen::Vector3d(plane.direction.unitOrthogonal());
+  addNoise(std::sqrt(noise / (is_wide ? plane.width : extent)) * wide, p.arm, sums.equations.noise_information);
+  addNoise(std::sqrt(noise / extent) * plane.direction.cross(wide), p.arm, sums.equations.noise_information);
   ++sums.equations.planes;
 }
 
@@ -186,22 +181,23 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   rows.add(along, p.arm, second, w, p.since_middle);
   // Two points go into the line; its direction may be off to two sides.
   const double count = std::max(1.0, static_cast<double>(line.count));
-  const double noise = line.thickness + 2.0 * kRangeNoise * kRangeNoise / count;
-  addNoise(2.0 * w * noise / (count * std::max(line.extent, kNoExtent)), p.arm, sums.equations.chance_information);
+  const double noise = w * (line.thickness + 2.0 * kRangeNoise * kRangeNoise / count) / count;
+  const double tilt = std::sqrt(2.0 * noise / std::max(line.extent, kNoExtent));
+  for (const Eigen::Vector3d& axis :
+       {Eigen::Vector3d(line.direction), other, Eigen::Vector3d(other.cross(line.direction))}) {
+    addNoise(tilt * axis, p.arm, sums.equations.noise_information);
+  }
   ++sums.equations.edges;
 }
 
 /// The distance to the nearest point, as far as it is felt.
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
-  // Over the root of a cell's points: how much seems felt along what they fill evenly.
-  constexpr double kFeltByChance = 0.25;
   const double variance = kRangeNoise * kRangeNoise + near.thickness;
   const double squared_run = p.run.squaredNorm();
   const Eigen::Vector3d off = p.place - near.center;
   Eigen::Vector3d seen = off;
   Eigen::Matrix3d felt = near.felt;
-  double told_of_run = 1.0;
   if (squared_run > kNoExtent) {  // S off and S felt S with S = 1 - (1 - k) run run^T / |run|^2
     const double k = feltAlongRun(squared_run, variance);
     const double unfelt = (1.0 - k) / squared_run;
@@ -209,20 +205,12 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
     felt -=
         along * p.run.transpose() + p.run * along.transpose() - unfelt * along.dot(p.run) * p.run * p.run.transpose();
     seen -= unfelt * p.run.dot(off) * p.run;
-    told_of_run = k * k;
   }
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
   const double w = weight(length * length, variance, direction, p, open.dot(felt * open), sums);
   ++sums.equations.points;
   rows.add(felt, off, p.arm, w, p.since_middle);
-  const double chance = w * kFeltByChance / std::sqrt(std::max(1.0, static_cast<double>(near.count)));
-  addNoise(chance, p.arm, sums.equations.chance_information);
-  if (told_of_run < 1.0) {  // what is not felt is not felt by chance
-    Eigen::Matrix<double, 6, 1> row;
-    row << p.run, p.arm.cross(p.run);
-    sums.equations.chance_information -= chance * (1.0 - told_of_run) / squared_run * row * row.transpose();
-  }
 }
 
 /// The kernel is as wide as the residual may be off with the pose.

@@ -31,6 +31,19 @@ struct SurfaceSums {
   void add(const SurfaceSums& other);
 };
 
+/// Of all residuals of a sweep.
+struct SweepSums {
+  SurfaceSums scan;
+  SurfaceSums edges;  ///< the paper's features
+
+  [[nodiscard]] SurfaceSums total() const
+  {
+    SurfaceSums sums = scan;
+    sums.add(edges);
+    return sums;
+  }
+};
+
 /// The residuals at one estimate of pose and motion.
 struct SurfaceResiduals {
   MovingSensor sensor;
@@ -43,8 +56,8 @@ struct SurfaceResiduals {
   /// In fixed chunks, added in order: the same bits for every number of threads.
   /// \param stride one of the scan's points in so many
   /// \param parts room for the chunks' sums
-  [[nodiscard]] SurfaceSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                   std::vector<SurfaceSums>& parts) const;
+  [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
+                                 std::vector<SurfaceSums>& parts) const;
 
 private:
   [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const;

@@ -21,6 +21,19 @@ Matrix12 SweepPrior::information() const
   return information;
 }
 
+SweepPrior SweepPrior::apartFrom(const Matrix6& onto) const
+{
+  using Square = Eigen::Matrix<double, 12, 12>;
+  Square these = Square::Zero();
+  these.topLeftCorner<6, 6>() = onto;
+  these.bottomRightCorner<6, 6>() = onto;
+  const Square others = Square::Identity() - these;
+  const Square all = covariance;
+  SweepPrior apart = *this;
+  apart.covariance = others * all * others.transpose() + these * all * these.transpose();
+  return apart;
+}
+
 Vector12 SweepPrior::offset(const SE3& target_T_sensor, const Vector6& at_velocity) const
 {
   const Vector6 faster = at_velocity - velocity;

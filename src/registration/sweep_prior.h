@@ -25,6 +25,10 @@ struct SweepPrior {
   /// counts, how well the pose is known.
   [[nodiscard]] Matrix12 information() const;
 
+  /// The same with nothing in common between what is known of some motions and of all others.
+  /// \param onto projects on these motions
+  [[nodiscard]] SweepPrior apartFrom(const Matrix6& onto) const;
+
   /// How far a pose and a velocity are from what was expected.
   [[nodiscard]] Vector12 offset(const SE3& target_T_sensor, const Vector6& at_velocity) const;
 };

@@ -75,6 +75,39 @@ TEST(UnobservableDirection, IsNotHiddenByTheSensorsOwnColumns)
   EXPECT_GT(judged, 0U) << "nothing was tracked for a second";
 }
 
+/// Between doors a corridor tells nothing, and noise must not either: neither that the sensor stands still, nor, by how
+/// the directions of its walls vary from scan to scan, that it jumps.
+TEST(UnobservableDirection, IsGoneThroughBetweenDoors)
+{
+  constexpr std::size_t kStarted = 50;
+  constexpr std::size_t kCorridorScans = 200;
+  constexpr double kFarthestOff = 0.2;  // m, over 22 m
+  for (const unsigned seed : {2U, 4U}) {
+    SimulationOptions options;
+    options.world = "corridor";
+    options.family = Family::test;
+    options.realism = Realism::real;
+    options.seed = seed;
+    Simulation simulation(options);
+    OdometryParameters parameters;
+    parameters.pose_instant = PoseInstant::middle;
+    Odometry<PointXYZIRT> odometry(parameters);
+    SE3 truth_there;
+    SE3 there;
+    for (std::size_t scan = 0; scan < kCorridorScans; ++scan) {
+      const Sweep sweep = simulation.sweep(scan);
+      odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
+      if (scan == kStarted) {
+        truth_there = sweep.world_T_middle;
+        there = odometry.pose();
+      } else if (scan > kStarted) {
+        const SE3 off = (truth_there.inverse() * sweep.world_T_middle).inverse() * (there.inverse() * odometry.pose());
+        ASSERT_LT(off.translation.norm(), kFarthestOff) << "seed " << seed << ", scan " << scan;
+      }
+    }
+  }
+}
+
 /// Wheels that are 2 cm off in each period tell of the way along; the scans tell of the rest.
 TEST(UnobservableDirection, IsLeftToAHint)
 {
