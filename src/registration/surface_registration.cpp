@@ -104,7 +104,8 @@ private:
     report.point_correspondences = sums.equations.points;
     report.plane_inliers = sums.equations.plane_inliers;
     report.information = strong_.transpose() * sums.equations.information * strong_;
-    result.told = covarianceBy(report.information / kResidualsBesideMotion + besides().information);
+    const Matrix6 net = strong_.transpose() * Square6(net_) * strong_;
+    result.told = covarianceBy(net / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
     report.residual_rms =
         sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;
@@ -171,11 +172,12 @@ private:
   {
     SurfaceSums told = sums.total();
     known_ = told.equations;
+    NetEquations net = withoutNoise(sums.scan.equations);
+    net += withoutNoise(sums.edges.equations);
+    net_ = net.steps.information;
     if (!problem_.prior.pose_counts) {
       return told;
     }
-    NetEquations net = withoutNoise(sums.scan.equations);
-    net += withoutNoise(sums.edges.equations);
     const UntoldMotions untold =
         untoldMotions(net.steps, told.equations, kResidualsBesideMotion * besides().information);
     if (!problem_.is_rival) {
@@ -259,6 +261,7 @@ private:
   std::vector<SurfaceSums> own_parts_;
   std::vector<SurfaceSums>& parts_;
   NormalEquations known_;  // of the last iteration
+  Matrix6 net_ = Matrix6::Zero();
   std::vector<WeakDirection> weak_;
   Square6 strong_ = Square6::Identity();  // projects on all other directions
 };
