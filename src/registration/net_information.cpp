@@ -54,7 +54,7 @@ NetEquations& NetEquations::operator+=(const NetEquations& other)
 
 NetEquations withoutNoise(const NormalEquations& equations)
 {
-  constexpr double kMayBe = 2.0;  // times what noise makes in the mean: it is now more, now less
+  constexpr double kMayBe = 1.5;  // times what noise makes in the mean: it is now more, now less
   if (!(equations.squared_extent > 0.0)) {
     return {equations, equations};
   }
