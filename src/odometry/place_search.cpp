@@ -20,7 +20,7 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   problem.prior.periods_between = 0.0;
   problem.prior.pose_counts = false;
   problem.reach = reachOf(doubt);
-  problem.wants_evidence = true;
+  problem.wants_evidence = problem.is_rival = true;
   return registerSurfaces(problem);
 }
 

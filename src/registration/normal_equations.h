@@ -31,8 +31,8 @@ inline constexpr double kSmallestKernelScale = 0.05;
 /// over the sweep as delta + s epsilon: J is the derivative by the former, s J by the latter.
 struct NormalEquations {
   Matrix6 information = Matrix6::Zero();  ///< H = sum w J^T J
-  /// The part of H that noise makes: that of the planes' normals, sum w J^T J with J of the normals' tilts, of the
-  /// lines' directions, and the chance of how few points lie. Along a smooth corridor there is nothing else in H.
+  /// The part of H that noise makes: that of the planes' normals, sum w J^T J with J of the normals' tilts, and by
+  /// surfaces of the lines' directions. Along a smooth corridor there is nothing else in H.
   Matrix6 noise_information = Matrix6::Zero();
   Matrix6 coupling = Matrix6::Zero();           ///< sum w s J^T J: of pose and twist
   Matrix6 twist_information = Matrix6::Zero();  ///< sum w s^2 J^T J

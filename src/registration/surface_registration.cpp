@@ -95,7 +95,9 @@ private:
   void conclude(SurfaceRegistration& result, const SurfaceSums& sums)
   {
     RegistrationReport& report = result.report;
-    report.weak_directions = weak_;
+    if (report.hasConverged()) {
+      report.weak_directions = weak_;
+    }
     report.target_T_source = report.hasConverged() ? pose_ : problem_.prior.pose;
     report.sweep_twist = twist();
     report.sweep_acceleration = acceleration();
@@ -164,10 +166,10 @@ private:
 
   [[nodiscard]] bool isLocked(int i) const { return problem_.locked[static_cast<std::size_t>(i % 6)]; }
 
-  /// What points and edges tell, each beyond their noise: neither hides what the other tells. Along a motion of which
-  /// they tell next to nothing the pose is left to the prior, and so it is not corrected by what is seen of others: how
-  /// far the sensor has gone unseen is known worse than in which direction, and that worse than where the walls are.
-  /// The first motion has no prior that it could be left to.
+  /// What points and edges tell, each beyond their noise: noise of the one does not make the other less. Along a motion
+  /// of which they tell next to nothing the pose is left to the prior, and so it is not corrected by what is seen of
+  /// others: how far the sensor has gone unseen is known worse than in which direction, and that worse than where the
+  /// walls are. The first motion has no prior that it could be left to.
   SurfaceSums told(const SweepSums& sums)
   {
     SurfaceSums told = sums.total();
@@ -175,7 +177,7 @@ private:
     NetEquations net = withoutNoise(sums.scan.equations);
     net += withoutNoise(sums.edges.equations);
     net_ = net.steps.information;
-    if (!problem_.prior.pose_counts) {
+    if (!problem_.prior.pose_counts && !problem_.is_rival) {
       return told;
     }
     const UntoldMotions untold =

@@ -49,12 +49,13 @@ struct RegistrationReport {
   /// Motion over the sweep that goes with the result: as it was given, or as it was estimated.
   Vector6 sweep_twist = Vector6::Zero();
   Vector6 sweep_acceleration = Vector6::Zero();  ///< change of that motion over the sweep
-  /// J^T W J of the last iteration, of points and, but by surfaces, of factors. Perturbation order (translation m,
-  /// rotation rad), on the left, with the rotation about the sensor's position and the target's axes.
+  /// J^T W J of the last iteration: by features of points and factors; by surfaces of points, without what noise makes
+  /// of it. Perturbation order (translation m, rotation rad), on the left, with the rotation about the sensor's
+  /// position and the target's axes.
   Matrix6 information = Matrix6::Zero();
-  /// Covariance of the pose in the same parametrisation: the information's inverse times the variance of an independent
-  /// residual, which several neighbouring ones make up. The map's own drift comes on top. Weak directions have a
-  /// variance too large to be used, not infinity, or that of the motion prior.
+  /// Covariance of the pose in the same parametrisation: by features the information's inverse times the variance of an
+  /// independent residual, which several neighbouring ones make up. The map's own drift comes on top. Weak directions
+  /// have a variance too large to be used, not infinity, or that of the motion prior.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<WeakDirection> weak_directions;
 
