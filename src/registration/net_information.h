@@ -17,11 +17,11 @@ namespace pcl_floam {
 /// Equations in which a motion counts by the share of its information that is none of noise's. Noise moves along with
 /// the sensor, and says that it stands still.
 ///
-/// With the axes that information and noise have in common, H v = lambda v' and noise mu v': with the share s = 1 - mu,
-/// or none if noise may be all, the true motion d makes b = s lambda d in the mean, not lambda d (errors in variables;
-/// Fuller 1987), with the variance lambda. So s b is what a motion tells against what is known otherwise, s^2 lambda is
-/// how well; and while points keep their surfaces s b changes by s lambda. A share of 0 leaves out an axis (solution
-/// remapping after Zhang, Kaess and Singh, 2016).
+/// Along an axis that H and its noise N have in common, let v^T H v = lambda and v^T N v = mu lambda. With the share
+/// s = 1 - mu (mu taken for more than its mean, s for none if noise may be all) the true motion d makes b = s lambda d
+/// in the mean, not lambda d (errors in variables; Fuller 1987), with the variance lambda. So s b is what a motion
+/// tells against what is known otherwise, s^2 lambda is how well; and while points keep their surfaces s b changes by s
+/// lambda. A share of 0 leaves out an axis (solution remapping after Zhang, Kaess and Singh, 2016).
 struct NetEquations {
   NormalEquations steps;  ///< s lambda and s b: what a step is made from
   NormalEquations known;  ///< s^2 lambda and s b: what is known then
