@@ -98,6 +98,15 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 
 }  // namespace
 
+std::size_t ScanLines::seenLines() const
+{
+  std::size_t seen = 0;
+  for (std::size_t m = 0; m < lines(); ++m) {
+    seen += begin[m] < begin[m + 1] ? 1 : 0;
+  }
+  return seen;
+}
+
 void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
                    int threads)
 {

@@ -26,7 +26,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
-    if (lines.valid() && lines.lines() < kFewestLines && may_do_without) {
+    if (lines.valid() && lines.seenLines() < kFewestLines && may_do_without) {
       lines = ScanLines();
       lines.failure = ScanLineFailure::too_few_lines;
     }

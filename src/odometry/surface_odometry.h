@@ -102,6 +102,10 @@ struct SurfaceOdometry : OdometryRun {
       report.reason = "the map has no surface for most of the scan: the pose may be wrong";
       return TrackingState::doubtful;
     }
+    if (scan.lines.failure == ScanLineFailure::too_few_lines) {
+      report.reason = "the scan lines are too few to bear each other out: their own pattern may hold the pose";
+      return TrackingState::doubtful;
+    }
     return toldState();
   }
 

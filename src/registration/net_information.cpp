@@ -35,6 +35,25 @@ NormalEquations partOf(const NormalEquations& equations, const Square6& k)
   return part;
 }
 
+/// Of the motions that \p among spans, at right angles, those of which \p told is next to nothing of the information.
+Motions scarcelyToldBy(const Square6& told, const Square6& information, const Motions& among)
+{
+  // Axes have noise themselves: along one that is slightly off, others would seem to tell of it.
+  constexpr double kNextToNothing = 0.03;
+  using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+  if (among.cols() == 0) {
+    return among;
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Within> axes(Within(among.transpose() * told * among),
+                                                              Within(among.transpose() * information * among));
+  const Eigen::Index count = (axes.eigenvalues().array() < kNextToNothing).count();  // they are rising
+  if (count == 0) {
+    return Motions(6, 0);
+  }
+  const Motions spanned = among * axes.eigenvectors().leftCols(count);
+  return Eigen::HouseholderQR<Motions>(spanned).householderQ() * Motions::Identity(6, count);
+}
+
 }  // namespace
 
 Vector6 commonUnits(const NormalEquations& equations)
@@ -73,29 +92,21 @@ NetEquations withoutNoise(const NormalEquations& equations)
 
 UntoldMotions untoldMotions(const NormalEquations& net, const NormalEquations& all, const Matrix6& besides)
 {
-  // Axes have noise themselves: along one that is slightly off, others would seem to tell of it.
-  constexpr double kNextToNothing = 0.03;
   UntoldMotions untold;
   if (!(all.squared_extent > 0.0)) {
     return untold;
   }
   const Vector6 units = commonUnits(all);
-  const Square6 information = all.information + nothingOf(all);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Square6> axes(Square6(net.information), information);
-  const Eigen::Index count = (axes.eigenvalues().array() < kNextToNothing).count();  // they are rising
-  if (count == 0) {
-    return untold;
+  const auto inUnits = [&](const Matrix6& m) { return Square6(units.asDiagonal() * Square6(m) * units.asDiagonal()); };
+  const Square6 information = inUnits(Matrix6(all.information + nothingOf(all)));
+  const Square6 told = inUnits(net.information);
+  const Motions motions = scarcelyToldBy(told, information, Motions::Identity(6, 6));
+  untold.onto = units.asDiagonal() * Square6(motions * motions.transpose()) * units.cwiseInverse().asDiagonal();
+  const Motions named = scarcelyToldBy(inUnits(besides), information, motions);
+  for (Eigen::Index i = 0; i < named.cols(); ++i) {
+    const Eigen::Matrix<double, 6, 1> direction = named.col(i);
+    untold.directions.push_back({direction, std::max(0.0, direction.dot(told * direction)) / all.weight});
   }
-  const Motions scaled = units.cwiseInverse().asDiagonal() * axes.eigenvectors().leftCols(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Matrix<double, 6, 1> axis = axes.eigenvectors().col(i);  // so long that all tell a unit of it
-    if (axis.dot(Square6(besides) * axis) < kNextToNothing) {
-      const double eigenvalue = std::max(0.0, axes.eigenvalues()[i]) / (scaled.col(i).squaredNorm() * all.weight);
-      untold.directions.push_back({scaled.col(i).normalized(), eigenvalue});
-    }
-  }
-  const Motions q = Eigen::HouseholderQR<Motions>(scaled).householderQ() * Motions::Identity(6, count);
-  untold.onto = units.asDiagonal() * Square6(q * q.transpose()) * units.cwiseInverse().asDiagonal();
   return untold;
 }
 

@@ -124,6 +124,17 @@ private:
     return problem_.factors != nullptr ? problem_.factors->at(pose_) : PoseEquations();
   }
 
+  /// As residuals would tell of it: by factors, and, as well as all residuals together, of what is locked.
+  [[nodiscard]] Matrix6 toldElsewhere(const NormalEquations& all) const
+  {
+    Matrix6 told = kResidualsBesideMotion * besides().information;
+    const Vector6 units = commonUnits(all);
+    for (int i = 0; i < 6; ++i) {
+      told(i, i) += isLocked(i) ? all.weight / (units[i] * units[i]) : 0.0;
+    }
+    return told;
+  }
+
   /// Of the pose, whatever was expected.
   [[nodiscard]] Matrix6 covarianceBy(const Matrix6& information) const
   {
@@ -169,7 +180,7 @@ private:
   /// What points and edges tell, each beyond their noise: noise of the one does not make the other less. Along a motion
   /// of which they tell next to nothing the pose is left to the prior, and so it is not corrected by what is seen of
   /// others: how far the sensor has gone unseen is known worse than in which direction, and that worse than where the
-  /// walls are. The first motion has no prior that it could be left to.
+  /// walls are.
   SurfaceSums told(const SweepSums& sums)
   {
     SurfaceSums told = sums.total();
@@ -177,11 +188,7 @@ private:
     NetEquations net = withoutNoise(sums.scan.equations);
     net += withoutNoise(sums.edges.equations);
     net_ = net.steps.information;
-    if (!problem_.prior.pose_counts && !problem_.is_rival) {
-      return told;
-    }
-    const UntoldMotions untold =
-        untoldMotions(net.steps, told.equations, kResidualsBesideMotion * besides().information);
+    const UntoldMotions untold = untoldMotions(net.steps, told.equations, toldElsewhere(told.equations));
     if (!problem_.is_rival) {
       told.equations = net.steps;
       known_ = net.known;

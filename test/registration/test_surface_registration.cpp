@@ -3,6 +3,7 @@
 
 #include "map/voxel_pyramid.h"
 #include "registration/sweep_points.h"
+#include "support/corner.h"
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
@@ -14,74 +15,11 @@
 
 namespace pcl_floam {
 
+using test::Corner;
+using test::problemOf;
+using test::sweepOf;
+
 namespace {
-
-/// Two walls and a floor about the origin as functions of the place: exact, with no sampling of their own.
-class Corner : public SurfaceSearch {
-public:
-  explicit Corner(int walls) : walls_(walls) {}
-
-  [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
-  {
-    for (std::size_t i = 0; i < count; ++i) {
-      surfaces[i] = Surface();
-      for (int axis = 2; axis > 2 - walls_; --axis) {
-        if (std::abs(places[i][axis] - kWall) < 1.0) {
-          surfaces[i].kind = SurfaceKind::plane;
-          surfaces[i].direction = Eigen::Vector3d::Unit(axis);
-          surfaces[i].center = places[i];
-          surfaces[i].center[axis] = kWall;
-          surfaces[i].extent = 0.1;
-          surfaces[i].count = 20;
-        }
-      }
-    }
-  }
-
-  static constexpr double kWall = -4.0;  // m, on each axis
-
-private:
-  int walls_;
-};
-
-/// Points on the three walls of a corner, seen by a sensor that moves.
-std::vector<ScanPoint> sweepOf(const MovingSensor& sensor, std::size_t count)
-{
-  std::mt19937 random(6);
-  std::vector<ScanPoint> points(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Vector3d place(test::uniform(random, 2.5), test::uniform(random, 2.5), test::uniform(random, 2.5));
-    place[static_cast<int>(i % 3)] = Corner::kWall;
-    points[i].time = static_cast<float>(i) / static_cast<float>(count);
-    // What the sensor measures is the place seen from its pose of that moment.
-    const double u = MovingSensor::sinceMiddle(points[i]);
-    ScanPoint probe = points[i];
-    Eigen::Vector3d seen = sensor.pose().inverse() * place;
-    for (int iteration = 0; iteration < 20; ++iteration) {
-      probe.x = static_cast<float>(seen.x());
-      probe.y = static_cast<float>(seen.y());
-      probe.z = static_cast<float>(seen.z());
-      seen += sensor.pose().inverse() * place - sensor.undistorted(probe);
-    }
-    EXPECT_LE(std::abs(u), 0.5);
-    points[i].x = static_cast<float>(seen.x());
-    points[i].y = static_cast<float>(seen.y());
-    points[i].z = static_cast<float>(seen.z());
-  }
-  return points;
-}
-
-SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const SurfaceSearch& target)
-{
-  SurfaceProblem problem;
-  problem.scan = {&points, &target};
-  problem.reach = 0.1 * Matrix6(Matrix6::Identity());
-  problem.prior.covariance = 0.1 * Matrix12(Matrix12::Identity());
-  problem.prior.pose_counts = false;
-  return problem;
-}
 
 double distance(const SE3& a, const SE3& b)
 {
@@ -168,124 +106,6 @@ TEST(SurfaceRegistration, TheVelocityFollowsThePoseAsThePriorHasIt)
   problem.prior.covariance.bottomLeftCorner<6, 6>() = 0.05 * Matrix6(Matrix6::Identity());
   const SurfaceRegistration found = registerSurfaces(problem);
   EXPECT_LT((found.velocity.head<3>() - 0.5 * truth.translation).norm(), 1e-3);
-}
-
-TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
-{
-  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
-  const Corner floor(1);
-  SurfaceProblem problem = problemOf(points, floor);
-  problem.prior.pose_counts = true;
-  const RegistrationReport report = registerSurfaces(problem).report;
-  ASSERT_TRUE(report.hasConverged());
-  EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 1e-3);
-  EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 1e-3);
-  EXPECT_NEAR(report.information(0, 0), 0.0, 1e-11 * report.information(2, 2));
-  EXPECT_NEAR(report.information(5, 5), 0.0, 1e-11 * report.information(3, 3));
-  EXPECT_NEAR(report.covariance(0, 0), 0.1, 0.02);
-  EXPECT_LT(report.covariance(2, 2), 1e-4);
-}
-
-/// It is expected that whoever goes on goes up, by a slope that is a matter of noise: seen is that the sensor is higher
-/// than was expected, and that says nothing of how far it has gone.
-TEST(SurfaceRegistration, WhatIsSeenDoesNotMoveThePoseAlongWhatIsNot)
-{
-  constexpr double kUnseen = 1.0;  // m, standard deviation
-  constexpr double kSlope = 0.02;
-  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.02));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
-  const Corner corridor(2);  // along x
-  SurfaceProblem problem = problemOf(points, corridor);
-  problem.prior.pose_counts = true;
-  problem.prior.covariance = 1e-6 * Matrix12(Matrix12::Identity());
-  const Eigen::Vector3d along(kUnseen, 0.0, kUnseen * kSlope);
-  problem.prior.covariance.topLeftCorner<3, 3>() += along * along.transpose();
-  const RegistrationReport report = registerSurfaces(problem).report;
-  ASSERT_TRUE(report.hasConverged());
-  EXPECT_NEAR(report.target_T_source.translation.z(), 0.02, 2e-3);
-  EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 0.01 * kUnseen);
-  EXPECT_NEAR(std::sqrt(report.covariance(0, 0)), kUnseen, 0.1 * kUnseen);
-}
-
-/// A wall's returns, one column beside the next, look like posts that stand where the sensor drew them.
-class Columns : public SurfaceSearch {
-public:
-  explicit Columns(SurfaceKind kind) : kind_(kind) {}
-
-  [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
-  {
-    for (std::size_t i = 0; i < count; ++i) {
-      surfaces[i] = Surface();
-      surfaces[i].kind = kind_;
-      surfaces[i].center = {std::round(places[i].x()), kWall, 0.0};
-      if (kind_ == SurfaceKind::line) {
-        surfaces[i].direction = Eigen::Vector3d::UnitZ();
-        surfaces[i].extent = 0.1;
-      }
-      surfaces[i].count = 20;
-    }
-  }
-
-  static constexpr double kWall = 2.0;  // m, aside
-
-private:
-  SurfaceKind kind_;
-};
-
-/// What a sensor turned by a quarter sees of the columns if it is so far along them.
-std::vector<ScanPoint> columnsSeen(SurfaceKind kind, double along, float run)
-{
-  std::vector<ScanPoint> points(400);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i].x = static_cast<float>(Columns::kWall);
-    points[i].y = 10.0F - static_cast<float>(i % 20) + static_cast<float>(along);
-    points[i].z = kind == SurfaceKind::line ? 0.1F * static_cast<float>(i / 20) : 0.0F;
-    points[i].run = {0.0F, run, 0.0F};
-  }
-  return points;
-}
-
-RegistrationReport registeredWithColumns(SurfaceKind kind, double along, float run, double prior)
-{
-  const Columns target(kind);
-  const std::vector<ScanPoint> points = columnsSeen(kind, along, run);
-  SurfaceProblem problem = problemOf(points, target);
-  problem.prior.pose.rotation = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  problem.prior.covariance *= prior;
-  problem.prior.pose_counts = true;
-  problem.locked = {false, false, true, true, true, true};
-  return registerSurfaces(problem).report;
-}
-
-TEST(SurfaceRegistration, WhatLiesOnAStraightRunTellsHardlyAnythingAlongIt)
-{
-  for (const SurfaceKind kind : {SurfaceKind::line, SurfaceKind::point}) {
-    const Matrix6 of_posts = registeredWithColumns(kind, 0.0, 0.0F, 1.0).information;
-    const Matrix6 of_wall = registeredWithColumns(kind, 0.0, 5.0F, 1.0).information;
-    EXPECT_GT(of_posts(0, 0), 0.5 * of_posts(1, 1));
-    EXPECT_LT(of_wall(0, 0), 1e-3 * of_posts(0, 0));
-    EXPECT_NEAR(of_wall(1, 1), of_posts(1, 1), 1e-6 * of_posts(1, 1));
-  }
-}
-
-/// A short run, as of a post three returns wide, pulls as much as it tells: against a prior that counts about as much
-/// lines and points come to the same pose.
-TEST(SurfaceRegistration, OfAShortRunPullAndInformationBelongTogether)
-{
-  constexpr double kOff = 0.01;  // m
-  constexpr double kPrior = 3e-4;
-  const RegistrationReport lines = registeredWithColumns(SurfaceKind::line, kOff, 0.1F, kPrior);
-  const RegistrationReport points = registeredWithColumns(SurfaceKind::point, kOff, 0.1F, kPrior);
-  ASSERT_TRUE(lines.hasConverged());
-  ASSERT_TRUE(points.hasConverged());
-  const double moved = lines.target_T_source.translation.x();
-  EXPECT_GT(moved, 0.1 * kOff);
-  EXPECT_LT(moved, 0.9 * kOff);
-  EXPECT_NEAR(points.target_T_source.translation.x(), moved, 0.02 * kOff);
-  EXPECT_NEAR(points.information(0, 0), lines.information(0, 0), 0.01 * lines.information(0, 0));
 }
 
 /// A laser that points a little elsewhere than it is said to misses a floor by the more the farther it is.

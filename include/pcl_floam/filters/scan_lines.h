@@ -36,7 +36,9 @@ enum class ScanLineFailure : std::uint8_t {
   source_not_available,
   no_line_structure,
   not_looked_for,  ///< as ScanStructure::space wants it
-  too_few_lines    ///< for one line to bear out what another one sees; of an odometry by surfaces
+  /// For one line to bear out what another one sees; of an odometry by surfaces, whose poses the lines' own pattern may
+  /// hold then: they are doubtful.
+  too_few_lines
 };
 
 [[nodiscard]] const char* toString(ScanStructure structure);
@@ -63,6 +65,8 @@ struct ScanLines {
   bool sorted_by_azimuth = false;
 
   [[nodiscard]] std::size_t lines() const { return begin.empty() ? 0 : begin.size() - 1; }
+  /// Those that have points.
+  [[nodiscard]] std::size_t seenLines() const;
   [[nodiscard]] bool valid() const { return failure == ScanLineFailure::none && lines() > 0; }
 };
 

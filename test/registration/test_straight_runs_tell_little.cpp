@@ -1,0 +1,98 @@
+// Registration of returns along straight runs: of a wall's columns, and of posts.
+#include "map/voxel_pyramid.h"
+#include "support/corner.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace pcl_floam {
+
+using test::problemOf;
+
+namespace {
+
+/// A wall's returns, one column beside the next, look like posts that stand where the sensor drew them.
+class Columns : public SurfaceSearch {
+public:
+  explicit Columns(SurfaceKind kind) : kind_(kind) {}
+
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      surfaces[i].kind = kind_;
+      surfaces[i].center = {std::round(places[i].x()), kWall, 0.0};
+      if (kind_ == SurfaceKind::line) {
+        surfaces[i].direction = Eigen::Vector3d::UnitZ();
+        surfaces[i].extent = 0.1;
+      }
+      surfaces[i].count = 20;
+    }
+  }
+
+  static constexpr double kWall = 2.0;  // m, aside
+
+private:
+  SurfaceKind kind_;
+};
+
+/// What a sensor turned by a quarter sees of the columns if it is so far along them.
+std::vector<ScanPoint> columnsSeen(SurfaceKind kind, double along, float run)
+{
+  std::vector<ScanPoint> points(400);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].x = static_cast<float>(Columns::kWall);
+    points[i].y = 10.0F - static_cast<float>(i % 20) + static_cast<float>(along);
+    points[i].z = kind == SurfaceKind::line ? 0.1F * static_cast<float>(i / 20) : 0.0F;
+    points[i].run = {0.0F, run, 0.0F};
+  }
+  return points;
+}
+
+RegistrationReport registeredWithColumns(SurfaceKind kind, double along, float run, double prior)
+{
+  const Columns target(kind);
+  const std::vector<ScanPoint> points = columnsSeen(kind, along, run);
+  SurfaceProblem problem = problemOf(points, target);
+  problem.prior.pose.rotation = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  problem.prior.covariance *= prior;
+  problem.prior.pose_counts = true;
+  problem.locked = {false, false, true, true, true, true};
+  return registerSurfaces(problem).report;
+}
+
+}  // namespace
+
+TEST(SurfaceRegistration, WhatLiesOnAStraightRunTellsHardlyAnythingAlongIt)
+{
+  for (const SurfaceKind kind : {SurfaceKind::line, SurfaceKind::point}) {
+    const Matrix6 of_posts = registeredWithColumns(kind, 0.0, 0.0F, 1.0).information;
+    const Matrix6 of_wall = registeredWithColumns(kind, 0.0, 5.0F, 1.0).information;
+    EXPECT_GT(of_posts(0, 0), 0.5 * of_posts(1, 1));
+    EXPECT_LT(of_wall(0, 0), 1e-3 * of_posts(0, 0));
+    EXPECT_NEAR(of_wall(1, 1), of_posts(1, 1), 1e-6 * of_posts(1, 1));
+  }
+}
+
+/// A short run, as of a post three returns wide, pulls as much as it tells: against a prior that counts about as much
+/// lines and points come to the same pose.
+TEST(SurfaceRegistration, OfAShortRunPullAndInformationBelongTogether)
+{
+  constexpr double kOff = 0.01;  // m
+  constexpr double kPrior = 3e-4;
+  const RegistrationReport lines = registeredWithColumns(SurfaceKind::line, kOff, 0.1F, kPrior);
+  const RegistrationReport points = registeredWithColumns(SurfaceKind::point, kOff, 0.1F, kPrior);
+  ASSERT_TRUE(lines.hasConverged());
+  ASSERT_TRUE(points.hasConverged());
+  const double moved = lines.target_T_source.translation.x();
+  EXPECT_GT(moved, 0.1 * kOff);
+  EXPECT_LT(moved, 0.9 * kOff);
+  EXPECT_NEAR(points.target_T_source.translation.x(), moved, 0.02 * kOff);
+  EXPECT_NEAR(points.information(0, 0), lines.information(0, 0), 0.01 * lines.information(0, 0));
+}
+
+}  // namespace pcl_floam

@@ -1,0 +1,134 @@
+// Registration where scans leave motions open: what becomes of the pose along these, and how they are named.
+#include "registration/net_information.h"
+#include "registration/surface_registration.h"
+#include "support/corner.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace pcl_floam {
+
+using test::Corner;
+using test::problemOf;
+using test::sweepOf;
+
+TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner floor(1);
+  SurfaceProblem problem = problemOf(points, floor);
+  problem.prior.pose_counts = true;
+  const RegistrationReport report = registerSurfaces(problem).report;
+  ASSERT_TRUE(report.hasConverged());
+  EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 1e-3);
+  EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 1e-3);
+  EXPECT_NEAR(report.information(0, 0), 0.0, 1e-11 * report.information(2, 2));
+  EXPECT_NEAR(report.information(5, 5), 0.0, 1e-11 * report.information(3, 3));
+  EXPECT_NEAR(report.covariance(0, 0), 0.1, 0.02);
+  EXPECT_LT(report.covariance(2, 2), 1e-4);
+}
+
+/// It is expected that whoever goes on goes up, by a slope that is a matter of noise: seen is that the sensor is higher
+/// than was expected, and that says nothing of how far it has gone.
+TEST(SurfaceRegistration, WhatIsSeenDoesNotMoveThePoseAlongWhatIsNot)
+{
+  constexpr double kUnseen = 1.0;  // m, standard deviation
+  constexpr double kSlope = 0.02;
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.02));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const Corner corridor(2);  // along x
+  SurfaceProblem problem = problemOf(points, corridor);
+  problem.prior.pose_counts = true;
+  problem.prior.covariance = 1e-6 * Matrix12(Matrix12::Identity());
+  const Eigen::Vector3d along(kUnseen, 0.0, kUnseen * kSlope);
+  problem.prior.covariance.topLeftCorner<3, 3>() += along * along.transpose();
+  const RegistrationReport report = registerSurfaces(problem).report;
+  ASSERT_TRUE(report.hasConverged());
+  EXPECT_NEAR(report.target_T_source.translation.z(), 0.02, 2e-3);
+  EXPECT_NEAR(report.target_T_source.translation.x(), 0.0, 0.01 * kUnseen);
+  EXPECT_NEAR(std::sqrt(report.covariance(0, 0)), kUnseen, 0.1 * kUnseen);
+}
+
+namespace {
+
+/// Of a bare floor, which leaves open two ways and a turn.
+SurfaceProblem onAFloor(const std::vector<ScanPoint>& points)
+{
+  static const Corner floor(1);
+  SurfaceProblem problem = problemOf(points, floor);
+  problem.prior.pose_counts = true;
+  return problem;
+}
+
+/// Knows how far the sensor has gone one way.
+class OneWay : public PoseFactor {
+public:
+  explicit OneWay(const Vector6& motion) : motion_(motion) {}
+
+  void addTo(const SE3& /*target_T_source*/, PoseEquations& equations) const override
+  {
+    equations.add(0.0, motion_, 1e-4);
+  }
+
+private:
+  Vector6 motion_;
+};
+
+/// The directions' parts of a motion, squared: 1 if they span it, 0 if they are at right angles to it.
+double share(const std::vector<WeakDirection>& directions, const Vector6& motion)
+{
+  double share = 0.0;
+  for (const WeakDirection& weak : directions) {
+    share += std::pow(weak.direction.dot(motion), 2);
+  }
+  return share;
+}
+
+}  // namespace
+
+TEST(UntoldMotions, AreNamedAtRightAngles)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<WeakDirection> weak = registerSurfaces(onAFloor(points)).report.weak_directions;
+  ASSERT_EQ(weak.size(), 3U);
+  for (std::size_t i = 0; i < weak.size(); ++i) {
+    for (std::size_t j = 0; j < weak.size(); ++j) {
+      EXPECT_NEAR(weak[i].direction.dot(weak[j].direction), i == j ? 1.0 : 0.0, 1e-9);
+    }
+  }
+  for (const int motion : {0, 1, 5}) {
+    EXPECT_NEAR(share(weak, Vector6::Unit(motion)), 1.0, 1e-3) << motion;
+  }
+}
+
+/// Somebody else tells of a way that is none of those that come out first.
+TEST(UntoldMotions, WhatAFactorTellsOfIsNotNamedAndNothingElse)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const Vector6 told = (Vector6::Unit(0) + 2.0 * Vector6::Unit(1)) / std::sqrt(5.0);
+  const Vector6 across = (2.0 * Vector6::Unit(0) - Vector6::Unit(1)) / std::sqrt(5.0);
+  const PoseFactors factors{{std::make_shared<OneWay>(told)}, SE3()};
+  SurfaceProblem problem = onAFloor(points);
+  problem.factors = &factors;
+  const std::vector<WeakDirection> weak = registerSurfaces(problem).report.weak_directions;
+  ASSERT_EQ(weak.size(), 2U);
+  EXPECT_NEAR(share(weak, told), 0.0, 1e-3);
+  EXPECT_NEAR(share(weak, across), 1.0, 1e-3);
+  EXPECT_NEAR(share(weak, Vector6::Unit(5)), 1.0, 1e-3);
+}
+
+TEST(UntoldMotions, WhatIsLockedIsNotNamed)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  SurfaceProblem problem = onAFloor(points);
+  problem.locked = {false, true, false, false, false, true};
+  const std::vector<WeakDirection> weak = registerSurfaces(problem).report.weak_directions;
+  ASSERT_EQ(weak.size(), 1U);
+  EXPECT_NEAR(share(weak, Vector6::Unit(0)), 1.0, 1e-3);
+}
+
+}  // namespace pcl_floam

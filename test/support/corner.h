@@ -1,0 +1,85 @@
+/// \file corner.h
+/// A corner of a room, as a search and as a sensor that moves sees it.
+#pragma once
+
+#include "registration/surface_registration.h"
+#include "registration/sweep_points.h"
+#include "support/random_motion.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace pcl_floam::test {
+
+/// Two walls and a floor about the origin as functions of the place: exact, with no sampling of their own.
+class Corner : public SurfaceSearch {
+public:
+  explicit Corner(int walls) : walls_(walls) {}
+
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      for (int axis = 2; axis > 2 - walls_; --axis) {
+        if (std::abs(places[i][axis] - kWall) < 1.0) {
+          surfaces[i].kind = SurfaceKind::plane;
+          surfaces[i].direction = Eigen::Vector3d::Unit(axis);
+          surfaces[i].center = places[i];
+          surfaces[i].center[axis] = kWall;
+          surfaces[i].extent = 0.1;
+          surfaces[i].count = 20;
+        }
+      }
+    }
+  }
+
+  static constexpr double kWall = -4.0;  // m, on each axis
+
+private:
+  int walls_;
+};
+
+/// Points on the three walls of a corner, seen by a sensor that moves.
+inline std::vector<ScanPoint> sweepOf(const MovingSensor& sensor, std::size_t count)
+{
+  std::mt19937 random(6);
+  std::vector<ScanPoint> points(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d place(uniform(random, 2.5), uniform(random, 2.5), uniform(random, 2.5));
+    place[static_cast<int>(i % 3)] = Corner::kWall;
+    points[i].time = static_cast<float>(i) / static_cast<float>(count);
+    // What the sensor measures is the place seen from its pose of that moment.
+    const double u = MovingSensor::sinceMiddle(points[i]);
+    ScanPoint probe = points[i];
+    Eigen::Vector3d seen = sensor.pose().inverse() * place;
+    for (int iteration = 0; iteration < 20; ++iteration) {
+      probe.x = static_cast<float>(seen.x());
+      probe.y = static_cast<float>(seen.y());
+      probe.z = static_cast<float>(seen.z());
+      seen += sensor.pose().inverse() * place - sensor.undistorted(probe);
+    }
+    EXPECT_LE(std::abs(u), 0.5);
+    points[i].x = static_cast<float>(seen.x());
+    points[i].y = static_cast<float>(seen.y());
+    points[i].z = static_cast<float>(seen.z());
+  }
+  return points;
+}
+
+/// From the origin, of which it is known only that it is near.
+inline SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const SurfaceSearch& target)
+{
+  SurfaceProblem problem;
+  problem.scan = {&points, &target};
+  problem.reach = 0.1 * Matrix6(Matrix6::Identity());
+  problem.prior.covariance = 0.1 * Matrix12(Matrix12::Identity());
+  problem.prior.pose_counts = false;
+  return problem;
+}
+
+}  // namespace pcl_floam::test
