@@ -5,8 +5,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace pcl_floam {
@@ -88,7 +90,63 @@ double share(const std::vector<WeakDirection>& directions, const Vector6& motion
   return share;
 }
 
+/// Cells of a floor whose normals are off as the noise of their points makes them: they pull along the floor.
+class NoisyFloor : public SurfaceSearch {
+public:
+  NoisyFloor()
+  {
+    std::mt19937 random(21);
+    for (Eigen::Vector2d& tilt : tilts_) {
+      tilt = {test::uniform(random, kMostTilt), test::uniform(random, kMostTilt)};
+    }
+  }
+
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      if (std::abs(places[i].z() - Corner::kWall) > 1.0) {
+        continue;
+      }
+      const Eigen::Vector2d cell = places[i].head<2>().array().floor();
+      const auto number = static_cast<std::size_t>(cell.x() + 16.0 * cell.y() + 1024.0) % tilts_.size();
+      surfaces[i].kind = SurfaceKind::plane;
+      surfaces[i].center << cell.array() + 0.5, Corner::kWall;
+      surfaces[i].direction = Eigen::Vector3d(tilts_[number].x(), tilts_[number].y(), 1.0).normalized();
+      surfaces[i].thickness = kThickness;
+      surfaces[i].extent = kExtent;
+      surfaces[i].count = kCount;
+    }
+  }
+
+private:
+  static constexpr int kCount = 20;
+  static constexpr double kThickness = 4e-4;  // m^2
+  static constexpr double kExtent = 1.0 / 12.0;
+  static constexpr double kMostTilt = 0.027;  // rad; the root of thickness / (count extent) in the mean
+  std::array<Eigen::Vector2d, 509> tilts_;
+};
+
 }  // namespace
+
+/// Also a first motion, of which nothing else is known than where it is looked for.
+TEST(UntoldMotions, NoiseDoesNotMoveThePoseAlongThem)
+{
+  const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.1));
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const NoisyFloor floor;
+  SurfaceProblem problem = problemOf(points, floor);
+  problem.prior.pose.translation.x() = 0.3;
+  for (const bool counts : {true, false}) {
+    problem.prior.pose_counts = counts;
+    const RegistrationReport report = registerSurfaces(problem).report;
+    ASSERT_TRUE(report.hasConverged());
+    EXPECT_NEAR(report.target_T_source.translation.x(), 0.3, 1e-3) << counts;
+    EXPECT_NEAR(report.target_T_source.translation.z(), 0.1, 0.01) << counts;
+  }
+}
 
 TEST(UntoldMotions, AreNamedAtRightAngles)
 {
