@@ -24,9 +24,10 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines.failure = ScanLineFailure::not_looked_for;
   } else {
     findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
+    lines_seen_ = std::max(lines_seen_, lines.seenLines());
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
-    if (lines.valid() && lines.seenLines() < kFewestLines && may_do_without) {
+    if (lines.valid() && lines_seen_ < kFewestLines && may_do_without) {
       lines = ScanLines();
       lines.failure = ScanLineFailure::too_few_lines;
     }

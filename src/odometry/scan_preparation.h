@@ -39,7 +39,8 @@ struct PreparedScan {
   void describeIn(OdometryReport& report) const;
 
 private:
-  bool turns_ = false;  ///< as an earlier scan showed
+  bool turns_ = false;          ///< as an earlier scan showed
+  std::size_t lines_seen_ = 0;  ///< at most, in a scan
   LineGrouping grouping_;
   std::vector<FeatureSelection> selections_;
 };

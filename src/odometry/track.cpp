@@ -25,7 +25,8 @@ SweepPlacement placementOf(CompensationMode mode)
   }
 }
 
-/// Of a pose that a single motion has led to, for so many periods: one that is not known at all.
+/// Of a pose that a single motion has led to, for so many periods, and that may be off by all that is looked for, m and
+/// rad.
 Matrix12 oneMotion(double periods)
 {
   constexpr double kRest = 1e-6;  // by how much it may be another at the end
@@ -34,7 +35,7 @@ Matrix12 oneMotion(double periods)
   covariance.topRightCorner<6, 6>().diagonal().setConstant(periods);
   covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
   covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
-  return covariance;
+  return kFastestMotion * kFastestMotion * covariance;
 }
 
 /// How far a motion is from what was told of it, in its standard deviations.
@@ -79,7 +80,6 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
     problem.reach = reachOf({far, kTurnPerMetre * far});
-    problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = round + 1 == look.rounds;
     found = registerSurfaces(problem);

@@ -34,11 +34,12 @@ struct NetEquations {
 /// Motions of which residuals tell next to nothing.
 struct UntoldMotions {
   Matrix6 onto = Matrix6::Zero();  ///< projects a motion on them, at right angles in common units
+  /// Those of them of which nobody else tells either, at right angles in common units.
   std::vector<WeakDirection> directions;
 };
 
 /// \param net     what is left of \p all without noise
-/// \param besides information from elsewhere: what it tells of is not named as a direction
+/// \param besides information from elsewhere, as so many residuals would have it
 [[nodiscard]] UntoldMotions untoldMotions(const NormalEquations& net, const NormalEquations& all,
                                           const Matrix6& besides = Matrix6::Zero());
 

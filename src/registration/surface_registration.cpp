@@ -25,6 +25,9 @@ constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose.
 constexpr double kSmallStep = 0.3;
 
+/// What nothing is known of, as information: a kilometre, 1/m^2 and 1/rad^2.
+constexpr double kNothingKnown = 1e-6;
+
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
@@ -128,6 +131,9 @@ private:
   [[nodiscard]] Matrix6 toldElsewhere(const NormalEquations& all) const
   {
     Matrix6 told = kResidualsBesideMotion * besides().information;
+    if (!(all.squared_extent > 0.0)) {
+      return told;
+    }
     const Vector6 units = commonUnits(all);
     for (int i = 0; i < 6; ++i) {
       told(i, i) += isLocked(i) ? all.weight / (units[i] * units[i]) : 0.0;

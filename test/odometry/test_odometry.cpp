@@ -355,6 +355,7 @@ TEST(Odometry, ALidarOfFourLayersIsNeverCalledTracked)
     EXPECT_EQ(report.scan_line_failure, ScanLineFailure::too_few_lines);
     EXPECT_NE(report.state, TrackingState::tracked) << "scan " << k;
     EXPECT_TRUE(report.world_T_sensor.isFinite());
+    EXPECT_TRUE(k + 1 < kPastTheStart || report.reason.find("too few") != std::string::npos) << report.reason;
   }
 }
 #endif

@@ -1,5 +1,4 @@
 // Registration of returns along straight runs: of a wall's columns, and of posts.
-#include "map/voxel_pyramid.h"
 #include "support/corner.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +59,6 @@ RegistrationReport registeredWithColumns(SurfaceKind kind, double along, float r
   SurfaceProblem problem = problemOf(points, target);
   problem.prior.pose.rotation = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   problem.prior.covariance *= prior;
-  problem.prior.pose_counts = true;
   problem.locked = {false, false, true, true, true, true};
   return registerSurfaces(problem).report;
 }

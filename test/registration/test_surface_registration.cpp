@@ -1,4 +1,4 @@
-// Registration of points with surfaces: known motions, sweeps, what cannot be seen, threads.
+// Registration of points with surfaces: known motions, sweeps, locks, evidence, threads.
 #include "registration/surface_registration.h"
 
 #include "map/voxel_pyramid.h"

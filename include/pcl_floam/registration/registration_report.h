@@ -24,7 +24,8 @@ enum class Termination : std::uint8_t {
 
 [[nodiscard]] const char* toString(Termination termination);
 
-/// A direction of motion that the correspondences hardly constrain.
+/// A direction of motion that the correspondences hardly constrain. By surfaces what factors or locks tell of is not
+/// named, and several directions are at right angles to each other.
 struct WeakDirection {
   /// Unit direction in (translation, rotation) about the sensor's position, in the world's axes; rotation
   /// components are scaled by the scene's size, so that both are metres of displacement of a typical point.
