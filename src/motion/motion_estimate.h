@@ -9,9 +9,6 @@
 
 namespace pcl_floam {
 
-/// m a period: 40 m/s at ten sweeps a second.
-inline constexpr double kFastestMotion = 4.0;
-
 /// Sweeps until the velocity is known again where the sensor has been sought.
 constexpr int kSweepsUntilKnown = 3;
 

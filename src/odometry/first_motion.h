@@ -8,6 +8,9 @@
 
 namespace pcl_floam {
 
+/// m a period: 40 m/s at ten sweeps a second.
+inline constexpr double kFastestMotion = 4.0;
+
 struct FirstMotions {
   std::vector<Vector6> likely;  ///< velocities per period, the likeliest first; none if the sweeps do not fit at all
   Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< the direction of which they tell least, in the sensor's axes

@@ -14,12 +14,11 @@ namespace {
 /// What was known of the velocity tells nothing there.
 SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const Doubt& doubt)
 {
-  MotionEstimate supposed;
-  supposed.place(guess, covarianceOf(doubt));
   problem.prior.pose = guess;
   problem.prior.velocity.setZero();
-  problem.prior.covariance = supposed.covariance();
+  problem.prior.covariance = MotionEstimate(guess).covariance();
   problem.prior.periods_between = 0.0;
+  problem.prior.pose_counts = false;
   problem.reach = reachOf(doubt);
   problem.wants_evidence = problem.is_rival = true;
   return registerSurfaces(problem);

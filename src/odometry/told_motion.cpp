@@ -1,6 +1,6 @@
 #include "odometry/told_motion.h"
 
-#include "motion/motion_estimate.h"
+#include "odometry/first_motion.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

@@ -25,8 +25,7 @@ SweepPlacement placementOf(CompensationMode mode)
   }
 }
 
-/// Of a pose that a single motion has led to, for so many periods, and that may be off by all that is looked for, m and
-/// rad.
+/// Of a pose that a single motion has led to, for so many periods: one that is not known at all.
 Matrix12 oneMotion(double periods)
 {
   constexpr double kRest = 1e-6;  // by how much it may be another at the end
@@ -35,7 +34,7 @@ Matrix12 oneMotion(double periods)
   covariance.topRightCorner<6, 6>().diagonal().setConstant(periods);
   covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
   covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
-  return kFastestMotion * kFastestMotion * covariance;
+  return covariance;
 }
 
 /// How far a motion is from what was told of it, in its standard deviations.
@@ -80,6 +79,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
     problem.reach = reachOf({far, kTurnPerMetre * far});
+    problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = round + 1 == look.rounds;
     found = registerSurfaces(problem);

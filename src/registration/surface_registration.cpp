@@ -25,9 +25,6 @@ constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose.
 constexpr double kSmallStep = 0.3;
 
-/// What nothing is known of, as information: a kilometre, 1/m^2 and 1/rad^2.
-constexpr double kNothingKnown = 1e-6;
-
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 

@@ -16,7 +16,8 @@ Matrix12 SweepPrior::information() const
   const Square known = rest.inverse();
   Matrix12 information;
   information << gain.transpose() * known * gain, -gain.transpose() * known, -known * gain, known;
-  information.topLeftCorner<6, 6>() += Square(pose_covariance.inverse());
+  information.topLeftCorner<6, 6>() +=
+      pose_counts ? Square(pose_covariance.inverse()) : Square(kNothingKnown * Square::Identity());
   return information;
 }
 

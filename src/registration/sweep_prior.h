@@ -18,10 +18,11 @@ struct SweepPrior {
   /// Of pose and velocity: perturbations on the left (translation m, rotation rad), about the sensor's position, the
   /// target's axes.
   Matrix12 covariance = Matrix12::Identity();
-  double fraction = 0.0;  ///< duration of the sweep in periods
+  bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
+  double fraction = 0.0;    ///< duration of the sweep in periods
 
-  /// H of pose and velocity: how well the pose is known; by how much the velocity follows it, and how well it is known
-  /// then.
+  /// H of pose and velocity: by how much the velocity follows the pose, and how well it is known then; and, if it
+  /// counts, how well the pose is known.
   [[nodiscard]] Matrix12 information() const;
 
   /// The same with nothing in common between what is known of some motions and of all others.
@@ -31,5 +32,8 @@ struct SweepPrior {
   /// How far a pose and a velocity are from what was expected.
   [[nodiscard]] Vector12 offset(const SE3& target_T_sensor, const Vector6& at_velocity) const;
 };
+
+/// What nothing is known of, as information: a kilometre, 1/m^2 and 1/rad^2.
+inline constexpr double kNothingKnown = 1e-6;
 
 }  // namespace pcl_floam

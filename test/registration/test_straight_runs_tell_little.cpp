@@ -59,6 +59,7 @@ RegistrationReport registeredWithColumns(SurfaceKind kind, double along, float r
   SurfaceProblem problem = problemOf(points, target);
   problem.prior.pose.rotation = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   problem.prior.covariance *= prior;
+  problem.prior.pose_counts = true;
   problem.locked = {false, false, true, true, true, true};
   return registerSurfaces(problem).report;
 }

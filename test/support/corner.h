@@ -78,6 +78,7 @@ inline SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const Surf
   problem.scan = {&points, &target};
   problem.reach = 0.1 * Matrix6(Matrix6::Identity());
   problem.prior.covariance = 0.1 * Matrix12(Matrix12::Identity());
+  problem.prior.pose_counts = false;
   return problem;
 }
 
