@@ -91,6 +91,22 @@ TEST_F(KittiPairs, ACoarseEpsilonCostsNoAccuracy)
   }
 }
 
+/// Three to four metres on, from the identity. Of thinned scans one pair takes the two sides of a thing that was passed
+/// for one.
+TEST_F(KittiPairs, ThirdNextScansAreFoundFromTheIdentity)
+{
+  constexpr double kRight = 0.3;  // m
+  for (const auto& [leaf, most_wrong] : {std::pair(0.0F, 0), std::pair(0.25F, 1)}) {
+    int wrong = 0;
+    int pairs = 0;
+    for (std::size_t target = 0; target + 3 < poses.size(); target += 4, ++pairs) {
+      wrong += errorOf(target, target + 3, leaf, SE3()) > kRight ? 1 : 0;
+    }
+    EXPECT_EQ(pairs, 26);
+    EXPECT_LE(wrong, most_wrong) << "leaf " << leaf;
+  }
+}
+
 TEST_F(KittiPairs, ScansTwentyMetresApartAreFoundFromHalfAMetreAndThreeDegreesOff)
 {
   const SE3 off(expSO3(3.0 / 180.0 * 3.14159265358979323846 * Eigen::Vector3d(1.0, 2.0, 2.0).normalized()),
