@@ -225,6 +225,8 @@ void addRunOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Run");
   addNumber(app, "--threads", o.parameters.threads, "N", "threads; the result does not depend on it");
+  addNumber(app, "--start-effort", o.parameters.start_effort, "N",
+            "registrations that the start adds to those of one scan");
   app.add_flag("-q,--quiet", o.quiet, "no progress and no summary; problems are still told");
   app.set_help_flag("-h,--help", "this help")->group("Run");
   app.set_version_flag("--version", PCL_FLOAM_VERSION)->group("Run");

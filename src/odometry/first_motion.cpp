@@ -13,11 +13,6 @@ namespace {
 
 constexpr double kNear = 0.5;  // m: as far as a registration finds a motion from a guess
 
-struct FirstMotion {
-  Vector6 velocity;
-  double evidence = 0.0;
-};
-
 /// The directions along which the position is hardly known, the worst first; none if that cannot be told. Rings that
 /// seem to know the way along hide it on an open road, so what is known little better is looked along, too.
 std::vector<Eigen::Vector3d> hardlyKnown(const Matrix6& information)
@@ -55,51 +50,10 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   return thin;
 }
 
-/// Two sweeps, looked at from any guess.
-class TwoSweeps {
-public:
-  TwoSweeps(const Sweep& first, const Sweep& second, const TrackSettings& settings)
-      : settings_(settings),
-        first_(thinned(first, settings.side, sampling_)),
-        second_(thinned(second, settings.side, sampling_))
-  {
-  }
-
-  /// Adds the motions that are found. \return the last one's registration
-  RegistrationReport lookAt(const std::vector<FirstLook>& looks, std::vector<FirstMotion>& motions) const
-  {
-    std::vector<RegistrationReport> found(looks.size());
-    std::vector<double> evidence(looks.size());
-    const auto parts = std::min(looks.size(), static_cast<std::size_t>(settings_.threads));
-    eachSideBySide(settings_.threads, parts, [&](std::size_t part) {
-      Track track(settings_);  // its memory serves one look after the other
-      for (std::size_t i = part; i < looks.size(); i += parts) {
-        found[i] = track.findMotion(first_, second_, looks[i]).report;
-        evidence[i] = track.evidence();
-      }
-    });
-    for (std::size_t i = 0; i < looks.size(); ++i) {
-      if (found[i].hasConverged()) {
-        motions.push_back({log(found[i].target_T_source) / second_.periods, evidence[i]});
-      }
-    }
-    return found.empty() ? RegistrationReport() : found.back();
-  }
-
-private:
-  const TrackSettings& settings_;
-  SpatialSampling sampling_;
-  Sweep first_;
-  Sweep second_;
-};
-
-/// Along the open directions both ways, and as it is told.
+/// Along the open directions both ways.
 std::vector<FirstLook> looksAlong(const std::vector<Eigen::Vector3d>& open, const Sweep& second)
 {
   std::vector<FirstLook> looks;
-  if (second.hint) {
-    looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
-  }
   for (const Eigen::Vector3d& direction : open) {
     for (int step = 1; step * kNear <= kFastestMotion * second.periods; ++step) {
       for (const double sign : {1.0, -1.0}) {
@@ -112,43 +66,85 @@ std::vector<FirstLook> looksAlong(const std::vector<Eigen::Vector3d>& open, cons
   return looks;
 }
 
-/// The few whose evidence is best and not hopelessly less than the best, no two of them nearer than \p same to each
-/// other.
-std::vector<Vector6> likeliest(std::vector<FirstMotion> motions, double same)
-{
-  std::stable_sort(motions.begin(), motions.end(),
-                   [](const FirstMotion& a, const FirstMotion& b) { return a.evidence > b.evidence; });
-  constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
-  std::vector<Vector6> likely;
-  for (const FirstMotion& motion : motions) {
-    const bool is_known = std::any_of(likely.begin(), likely.end(), [&](const Vector6& other) {
-      return (motion.velocity - other).head<3>().norm() < same;
-    });
-    if (!is_known && likely.size() < kMostLikely && motion.evidence > motions.front().evidence - kHopeless) {
-      likely.push_back(motion.velocity);
-    }
-  }
-  return likely;
-}
-
 }  // namespace
 
-FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings)
+FirstMotionSearch::FirstMotionSearch(const Sweep& first, const Sweep& second, const TrackSettings& settings)
+    : settings_(settings)
 {
   constexpr double kFar = 2.0;  // m
   constexpr int kFarRounds = 5;
-  const TwoSweeps sweeps(first, second, settings);
-  std::vector<FirstMotion> motions;
-  const Matrix6 information =
-      sweeps.lookAt({{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}}, motions).information;
-  if (motions.empty()) {
-    return {};
+  SpatialSampling sampling;
+  first_ = thinned(first, settings.side, sampling);
+  second_ = thinned(second, settings.side, sampling);
+  std::vector<FirstLook> looks = {{Vector6::Zero(), kFar, kFarRounds}, {Vector6::Zero(), kNear, 1}};
+  if (second.hint) {
+    looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
+  }
+  const Matrix6 information = lookAt(looks)[1].information;
+  if (found_.empty()) {
+    return;
   }
   const std::vector<Eigen::Vector3d> open = hardlyKnown(information);
-  sweeps.lookAt(looksAlong(open, second), motions);
-  return {likeliest(std::move(motions), kNear / second.periods),
-          open.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : open.front()};
+  looks_ = looksAlong(open, second_);
+  open_ = open.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : open.front();
+}
+
+std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<FirstLook>& looks)
+{
+  std::vector<RegistrationReport> reports(looks.size());
+  std::vector<double> evidence(looks.size());
+  const auto parts = std::min(looks.size(), static_cast<std::size_t>(settings_.threads));
+  eachSideBySide(settings_.threads, parts, [&](std::size_t part) {
+    Track track(settings_);  // its memory serves one look after the other
+    for (std::size_t i = part; i < looks.size(); i += parts) {
+      reports[i] = track.findMotion(first_, second_, looks[i]).report;
+      evidence[i] = track.evidence();
+    }
+  });
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (reports[i].hasConverged()) {
+      found_.push_back({log(reports[i].target_T_source) / second_.periods, evidence[i]});
+    }
+  }
+  return reports;
+}
+
+void FirstMotionSearch::goOn(std::size_t looks)
+{
+  const auto begin = looks_.begin() + static_cast<std::ptrdiff_t>(looked_);
+  looks = std::min(looks, looks_.size() - looked_);
+  lookAt({begin, begin + static_cast<std::ptrdiff_t>(looks)});
+  looked_ += looks;
+}
+
+double FirstMotionSearch::same() const
+{
+  return kNear / second_.periods;
+}
+
+/// The few whose evidence is best and not hopelessly less than the best, no two of them the same.
+FirstMotions FirstMotionSearch::motions() const
+{
+  constexpr std::size_t kMostLikely = 8;
+  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
+  std::vector<Found> best_first = found_;
+  std::stable_sort(best_first.begin(), best_first.end(),
+                   [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
+  FirstMotions motions;
+  motions.open = open_;
+  for (const Found& found : best_first) {
+    if (motions.likely.size() < kMostLikely && found.evidence > best_first.front().evidence - kHopeless &&
+        !isAmong(motions.likely, found.velocity, same())) {
+      motions.likely.push_back(found.velocity);
+    }
+  }
+  return motions;
+}
+
+bool isAmong(const std::vector<Vector6>& velocities, const Vector6& velocity, double same)
+{
+  return std::any_of(velocities.begin(), velocities.end(),
+                     [&](const Vector6& other) { return (velocity - other).head<3>().norm() < same; });
 }
 
 }  // namespace pcl_floam

@@ -16,8 +16,39 @@ struct FirstMotions {
   Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< the direction of which they tell least, in the sensor's axes
 };
 
-/// Those that registrations of two thinned sweeps lead to: from rest, along the direction that this leaves open, and as
-/// it is told.
-[[nodiscard]] FirstMotions likelyFirstMotions(const Sweep& first, const Sweep& second, const TrackSettings& settings);
+/// Whether one of some velocities is the same as another.
+[[nodiscard]] bool isAmong(const std::vector<Vector6>& velocities, const Vector6& velocity, double same);
+
+/// Looks for motions that registrations of two thinned sweeps lead to: from rest and as it is told, and then along the
+/// direction that this leaves open, a few at a time, since together they take as long as many scans.
+class FirstMotionSearch {
+public:
+  /// Looks from rest, and as it is told.
+  FirstMotionSearch(const Sweep& first, const Sweep& second, const TrackSettings& settings);
+
+  /// Whether nothing is left to look at.
+  [[nodiscard]] bool isDone() const { return looked_ == looks_.size(); }
+  /// Looks at the next few.
+  void goOn(std::size_t looks);
+  /// Of those found so far.
+  [[nodiscard]] FirstMotions motions() const;
+  /// m a period, within which two motions are one: a registration finds either from the other.
+  [[nodiscard]] double same() const;
+
+private:
+  struct Found {
+    Vector6 velocity;
+    double evidence = 0.0;
+  };
+
+  std::vector<RegistrationReport> lookAt(const std::vector<FirstLook>& looks);
+
+  TrackSettings settings_;
+  Sweep first_, second_;          // thinned
+  std::vector<FirstLook> looks_;  // along what is open
+  std::size_t looked_ = 0;
+  std::vector<Found> found_;
+  Eigen::Vector3d open_ = Eigen::Vector3d::Zero();
+};
 
 }  // namespace pcl_floam

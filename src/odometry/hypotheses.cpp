@@ -13,6 +13,19 @@ namespace {
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostOfADirection = 4;
 
+/// Whether the first motions of two are one: then the likelier one is followed.
+bool haveBegunAlike(const Hypothesis& a, const Hypothesis& b)
+{
+  constexpr double kSame = 0.5;  // m
+  return (a.poses[1].middle.translation - b.poses[1].middle.translation).norm() < kSame;
+}
+
+/// Whether one was too far behind another when they took a sweep.
+bool isHopeless(const Hypothesis& one, const Hypothesis& other, std::size_t then, const std::vector<Sweep>& kept)
+{
+  return one.evidences[then] < other.evidences[then] - hopeless(kept[then]);
+}
+
 bool isLikelier(const Hypothesis& a, const Hypothesis& b)
 {
   return a.evidence() > b.evidence();
@@ -25,6 +38,26 @@ bool hasMovedLess(const Hypothesis& a, const Hypothesis& b)
 
 }  // namespace
 
+double hopeless(const Sweep& sweep)
+{
+  constexpr double kOfAPoint = 0.1;
+  return kOfAPoint * static_cast<double>(sweep.sample.size());
+}
+
+void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
+{
+  last = track.step(sweep, rivals);
+  is_lost = !last.report.hasConverged();
+  if (keeps_poses && !is_lost) {
+    poses.push_back(track.pose());
+    evidences.push_back(track.evidence());
+  }
+  if (rivals == Rivals::motions) {
+    without_trace += last.report.weak_directions.empty() ? 0 : 1;
+    track.updateMap(sweep);
+  }
+}
+
 double Hypothesis::evidence() const
 {
   return is_lost ? -HUGE_VAL : track.evidence();
@@ -35,36 +68,16 @@ double Hypothesis::moved() const
   return is_lost ? HUGE_VAL : track.pose().middle.translation.norm();
 }
 
-void Hypotheses::add(Track track, const SurfaceRegistration& last, const std::vector<SweepPose>& poses)
+void Hypotheses::add(Hypothesis added)
 {
-  constexpr double kSame = 0.5;  // m
-  Hypothesis added{std::move(track), poses, last, false, numbered_++};
-  for (Hypothesis& other : all_) {
-    const Eigen::Vector3d apart = other.track.pose().middle.translation - added.track.pose().middle.translation;
-    if (apart.norm() < kSame && other.direction() == added.direction()) {
-      if (added.track.evidence() > other.track.evidence()) {
-        other = std::move(added);
-      }
-      return;
-    }
-  }
+  added.number = numbered_++;
   all_.push_back(std::move(added));
 }
 
 bool Hypotheses::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
 {
-  eachSideBySide(front().track.settings().threads, all_.size(), [&](std::size_t i) {
-    Hypothesis& hypothesis = all_[i];
-    hypothesis.last = hypothesis.track.step(sweep, rivals);
-    hypothesis.is_lost = !hypothesis.last.report.hasConverged();
-    if (keeps_poses && !hypothesis.is_lost) {
-      hypothesis.poses.push_back(hypothesis.track.pose());
-    }
-    if (rivals == Rivals::motions) {
-      hypothesis.without_trace += hypothesis.last.report.weak_directions.empty() ? 0 : 1;
-      hypothesis.track.updateMap(sweep);
-    }
-  });
+  eachSideBySide(front().track.settings().threads, all_.size(),
+                 [&](std::size_t i) { all_[i].step(sweep, rivals, keeps_poses); });
   if (rivals == Rivals::directions) {
     updateMaps(sweep);
   }
@@ -77,9 +90,9 @@ void Hypotheses::updateMaps(const Sweep& sweep)
   if (goes_on == all_.end()) {
     return;
   }
-  const bool is_keyframe = goes_on->track.isKeyframe();
+  took_in_ = goes_on->track.isKeyframe();
   eachSideBySide(front().track.settings().threads, all_.size(),
-                 [&](std::size_t i) { all_[i].track.updateMap(sweep, is_keyframe && !all_[i].is_lost); });
+                 [&](std::size_t i) { all_[i].track.updateMap(sweep, took_in_ && !all_[i].is_lost); });
 }
 
 void Hypotheses::giveUp(double behind, Rivals rivals)
@@ -93,6 +106,43 @@ void Hypotheses::giveUp(double behind, Rivals rivals)
         std::count_if(all_.begin(), here, isOfSameDirection) >= kMostOfADirection) {
       all_.erase(here);
     }
+  }
+}
+
+bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const
+{
+  const std::size_t now = late.evidences.size() - 1;
+  std::ptrdiff_t better = 0;
+  for (const Hypothesis& other : all_) {
+    if (other.direction() != late.direction()) {
+      continue;
+    }
+    const bool is_better = other.evidences[now] > late.evidences[now];
+    if (isHopeless(late, other, now, kept) || (is_better && now == 1 && haveBegunAlike(late, other))) {
+      return true;
+    }
+    better += is_better ? 1 : 0;
+  }
+  return better >= kMostOfADirection;
+}
+
+void Hypotheses::dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept)
+{
+  const auto isLeftBehind = [&](const Hypothesis& other) {
+    bool is_behind = haveBegunAlike(late, other);
+    for (std::size_t k = 1; k < kept.size() && !is_behind; ++k) {
+      is_behind = isHopeless(other, late, k, kept);
+    }
+    return is_behind && other.direction() == late.direction();
+  };
+  all_.erase(std::remove_if(all_.begin(), all_.end(), isLeftBehind), all_.end());
+}
+
+void Hypotheses::dropLost()
+{
+  const auto isLost = [](const Hypothesis& hypothesis) { return hypothesis.is_lost; };
+  if (!std::all_of(all_.begin(), all_.end(), isLost)) {
+    all_.erase(std::remove_if(all_.begin(), all_.end(), isLost), all_.end());
   }
 }
 

@@ -6,14 +6,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
 
 /// A track among others.
 struct Hypothesis {
+  Hypothesis(Track begun, const SurfaceRegistration& found) : track(std::move(begun)), last(found) {}
+
+  /// Takes the next sweep, and with it what others need to compare themselves, if \p keeps_poses. Its map takes the
+  /// sweep in if rivals are motions.
+  void step(const Sweep& sweep, Rivals rivals, bool keeps_poses);
+
   Track track;
-  std::vector<SweepPose> poses;  ///< of the sweeps since the first one, as far as they may be corrected
+  std::vector<SweepPose> poses;   ///< of the sweeps since the first one, as far as they may be corrected
+  std::vector<double> evidences;  ///< as each was taken
   SurfaceRegistration last;
   bool is_lost = false;
   std::size_t number = 0;
@@ -23,6 +31,11 @@ struct Hypothesis {
   [[nodiscard]] double evidence() const;
   [[nodiscard]] double moved() const;  ///< m, from the first sweep on
 };
+
+/// A track whose evidence is so much less than the best one's is given up, for each point of a sweep, since the errors
+/// that lead astray are shared by points: false ones lead by less while the map is young, and fall behind by more where
+/// a scene is clear.
+[[nodiscard]] double hopeless(const Sweep& sweep);
 
 /// Which is the best one.
 enum class Preference : std::uint8_t { likeliest, least_motion };
@@ -36,8 +49,7 @@ public:
   [[nodiscard]] Hypothesis& front() { return all_.front(); }
   [[nodiscard]] std::vector<Hypothesis>& all() { return all_; }
 
-  /// Follows a track, unless its motion is followed already: then the likelier one.
-  void add(Track track, const SurfaceRegistration& last, const std::vector<SweepPose>& poses);
+  void add(Hypothesis added);
 
   /// Each takes the next sweep. Each map takes in its own keyframes while rivals are motions, else all the same ones: a
   /// map that has just taken in a sweep explains the next one better, whatever is right.
@@ -45,10 +57,22 @@ public:
   /// \return whether any goes on
   bool step(const Sweep& sweep, Rivals rivals, bool keeps_poses);
 
+  /// Whether all maps took in the last sweep.
+  [[nodiscard]] bool tookIn() const { return took_in_; }
+
   /// Those that match no more, or have fallen behind the best one by so much evidence, and all but a few of each
   /// direction of time.
   /// \param rivals with which each is compared: motions within its direction of time
   void giveUp(double behind, Rivals rivals);
+
+  /// Whether a late one is hopelessly behind at the sweep that it took last, or is no other than one that is likelier.
+  [[nodiscard]] bool haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const;
+
+  /// Those that once were so behind one that has caught up.
+  void dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept);
+
+  /// Those that match no more, unless it is the only one.
+  void dropLost();
 
   /// \ref front becomes the one that is preferred.
   void putFirst(Preference preference);
@@ -63,6 +87,7 @@ private:
   void updateMaps(const Sweep& sweep);
 
   std::vector<Hypothesis> all_;
+  bool took_in_ = false;
   std::size_t numbered_ = 0;
 };
 

@@ -1,8 +1,6 @@
 #include "odometry/start.h"
 
 #include "common/side_by_side.h"
-#include "odometry/backward_pass.h"
-#include "odometry/first_motion.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -15,15 +13,6 @@ namespace {
 constexpr std::size_t kFirstSweeps = 12;
 constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
 
-/// A track whose evidence is so much less than the best one's is given up, for each point of a sweep, since the errors
-/// that lead astray are shared by points: false ones lead by less while the map is young, and fall behind by more where
-/// a scene is clear.
-double hopeless(const Sweep& sweep)
-{
-  constexpr double kOfAPoint = 0.1;
-  return kOfAPoint * static_cast<double>(sweep.sample.size());
-}
-
 std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 {
   std::vector<SE3> middles(poses.size());
@@ -33,81 +22,54 @@ std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 
 }  // namespace
 
-std::vector<TrackSettings> eachDirection(const TrackSettings& settings, bool is_known)
-{
-  std::vector<TrackSettings> directions = {settings};
-  if (!is_known) {
-    for (const double other : {1.0, -1.0}) {
-      directions.push_back(settings);
-      directions.back().direction = other;
-    }
-  }
-  return directions;
-}
-
 SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& settings, Hypotheses& hypotheses)
 {
-  SurfaceRegistration found;
-  found.report.termination = Termination::too_few_correspondences;  // if no motion is likely
-  const FirstMotions motions = likelyFirstMotions(kept_.front(), second, settings);
-  for (const TrackSettings& of_direction :
-       eachDirection(settings, kept_.front().is_direction_known && second.is_direction_known)) {
-    suppose(motions.likely, std::vector<Track>(motions.likely.size(), Track(of_direction, motions.open)), second, found,
-            hypotheses);
-  }
-  if (!hypotheses.empty()) {
-    kept_.push_back(second);
-    hypotheses.giveUp(hopeless(second), Rivals::motions);
-    found = hypotheses.front().last;
+  kept_.push_back(second);
+  candidates_.emplace(kept_, settings);
+  const SurfaceRegistration found = candidates_->followFirst(kept_, hypotheses);
+  if (hypotheses.empty()) {
+    kept_.pop_back();
+    candidates_.reset();
   }
   return found;
 }
 
-/// A track for each.
-void Start::suppose(const std::vector<Vector6>& motions, std::vector<Track> tracks, const Sweep& second,
-                    SurfaceRegistration& first_found, Hypotheses& hypotheses) const
-{
-  constexpr double kOff = 0.25;  // m: what the likely motions may still be off, whichever way time runs
-  constexpr int kRounds = 2;
-  const Sweep& first = kept_.front();
-  std::vector<SurfaceRegistration> found(tracks.size());
-  eachSideBySide(tracks.empty() ? 1 : tracks[0].settings().threads, tracks.size(), [&](std::size_t i) {
-    found[i] = tracks[i].begin(first, second, {motions[i], kOff, kRounds});
-  });
-  for (std::size_t i = 0; i < tracks.size(); ++i) {
-    if (hypotheses.empty()) {
-      first_found = found[i];
-    }
-    if (found[i].report.hasConverged()) {
-      const Vector6 twist = tracks[i].fractionOf(first) * tracks[i].motion().velocity();
-      const SweepPose pose = tracks[i].pose();
-      hypotheses.add(std::move(tracks[i]), found[i], {{SE3(), twist}, pose});
-    }
-  }
-}
-
 bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 {
-  if (!hypotheses.step(sweep, Rivals::motions, true)) {
+  const bool is_decided = !revisions_.empty();
+  if (!hypotheses.step(sweep, is_decided ? Rivals::directions : Rivals::motions, true)) {
     return false;
   }
-  hypotheses.giveUp(hopeless(sweep), Rivals::motions);
   kept_.push_back(sweep);
-  if (leavesNoTrace(hypotheses)) {
-    hypotheses.putFirst(Preference::least_motion);
+  if (is_decided) {
+    revise(hypotheses);
+  } else {
+    follow(sweep, hypotheses);
   }
   return true;
 }
 
-bool Start::isUndecided(const Hypotheses& hypotheses) const
+void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 {
-  return hypotheses.hasRivalsInDirection() && kept_.size() >= kFirstSweeps;
+  hypotheses.giveUp(hopeless(sweep), Rivals::motions);
+  candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
+  if (leavesNoTrace(hypotheses)) {
+    hypotheses.putFirst(Preference::least_motion);
+  }
+  if (isDecided(hypotheses)) {
+    beginRevision(hypotheses);
+  }
 }
 
-bool Start::isOver(const Hypotheses& hypotheses) const
+bool Start::isUndecided(const Hypotheses& hypotheses) const
+{
+  return revisions_.empty() && kept_.size() >= kFirstSweeps && hypotheses.hasRivalsInDirection();
+}
+
+bool Start::isDecided(const Hypotheses& hypotheses) const
 {
   const bool more_would_tell = hypotheses.hasRivalsInDirection() && !leavesNoTrace(hypotheses);
-  return kept_.size() >= (more_would_tell ? kMostFirstSweeps : kFirstSweeps);
+  return !isSearching() && kept_.size() >= (more_would_tell ? kMostFirstSweeps : kFirstSweeps);
 }
 
 /// Whether most of the first sweeps do not tell of a direction, and nobody else did.
@@ -118,36 +80,80 @@ bool Start::leavesNoTrace(const Hypotheses& hypotheses) const
   return 2 * hypotheses.front().without_trace > kept_.size() && !is_told;
 }
 
-void Start::settle(Hypotheses& hypotheses) const
+/// The best hypothesis of each direction of time stays. Where a motion leaves no trace, the least is as good as any.
+void Start::beginRevision(Hypotheses& hypotheses)
 {
-  const bool leaves_no_trace = leavesNoTrace(hypotheses);
-  hypotheses.keepOneOfEachDirection(leaves_no_trace ? Preference::least_motion : Preference::likeliest);
-  std::vector<Hypothesis>& all = hypotheses.all();
-  const TrackSettings& settings = all.front().track.settings();
-  std::vector<std::vector<SE3>> poses(all.size());
-  eachSideBySide(settings.threads, all.size(), [&](std::size_t i) {
-    const std::vector<SE3> forwards = middlesOf(all[i].poses);
-    poses[i] = posesFoundBackwards(kept_, forwards, all[i].track.settings());
-    if (poses[i].empty() && all.size() > 1) {
-      poses[i] = forwards;  // their maps must not differ in what they took in
-    }
-  });
-  const std::vector<bool> keyframes = keyframesAmong(poses[0].empty() ? middlesOf(all[0].poses) : poses[0], settings);
-  eachSideBySide(settings.threads, all.size(), [&](std::size_t i) {
-    beginAgain(all[i], poses[i], keyframes);
-    if (leaves_no_trace) {
-      all[i].track.forgetAlong(all[i].last.report.weak_directions, static_cast<double>(kept_.size()));
+  leaves_no_trace_ = leavesNoTrace(hypotheses);
+  hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
+  for (const Hypothesis& hypothesis : hypotheses.all()) {
+    revisions_.push_back(
+        {hypothesis.number, BackwardPass(kept_, middlesOf(hypothesis.poses), hypothesis.track.settings())});
+  }
+}
+
+void Start::revise(Hypotheses& hypotheses)
+{
+  hypotheses.dropLost();
+  const TrackSettings& settings = hypotheses.front().track.settings();
+  if (!keyframes_.empty()) {
+    keyframes_.push_back(hypotheses.tookIn());
+  }
+  if (std::all_of(revisions_.begin(), revisions_.end(), [](const Revision& r) { return r.pass.isDone(); })) {
+    return settle(hypotheses);
+  }
+  const int each = std::max(settings.start_effort / static_cast<int>(revisions_.size()), 1);
+  eachSideBySide(settings.threads, revisions_.size(), [&](std::size_t i) {
+    for (int n = 0; n < each && !revisions_[i].pass.isDone(); ++n) {
+      revisions_[i].pass.step(kept_);
     }
   });
 }
 
+/// The first sweeps go where the last ones say they were: one track after the other, the best one last, since each map
+/// takes about as long as a few sweeps.
+void Start::settle(Hypotheses& hypotheses)
+{
+  std::vector<Hypothesis>& all = hypotheses.all();
+  const auto revisionOf = [this](const Hypothesis& hypothesis) {
+    return std::find_if(revisions_.begin(), revisions_.end(),
+                        [&](const Revision& r) { return r.number == hypothesis.number; });
+  };
+  if (keyframes_.empty()) {
+    const std::vector<SE3> poses = revisedPoses(all[0], revisionOf(all[0])->pass);
+    keyframes_ = keyframesAmong(poses.empty() ? middlesOf(all[0].poses) : poses, all[0].track.settings());
+  }
+  const auto isLeft = [&](const Hypothesis& hypothesis) { return !revisionOf(hypothesis)->is_done; };
+  const auto next = std::find_if(all.rbegin(), all.rend(), isLeft);
+  if (next != all.rend()) {
+    const auto revision = revisionOf(*next);
+    beginAgain(*next, revisedPoses(*next, revision->pass));
+    if (leaves_no_trace_) {
+      next->track.forgetAlong(next->last.report.weak_directions, static_cast<double>(kept_.size()));
+    }
+    revision->is_done = true;
+  }
+  is_settled_ = std::none_of(all.begin(), all.end(), isLeft);
+  for (Hypothesis& hypothesis : all) {
+    hypothesis.track.beginEvidence();  // until the maps have taken in the same
+  }
+}
+
+/// None if they are not known better; where there were several hypotheses, whose maps must not differ in what they took
+/// in, those that were found forwards.
+std::vector<SE3> Start::revisedPoses(const Hypothesis& hypothesis, const BackwardPass& pass) const
+{
+  const std::vector<SE3> forwards = middlesOf(hypothesis.poses);
+  const std::vector<SE3> poses = pass.poses(forwards);
+  return poses.empty() && revisions_.size() > 1 ? forwards : poses;
+}
+
 /// With poses that are known better; none: as it is.
-void Start::beginAgain(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes) const
+void Start::beginAgain(Hypothesis& found, const std::vector<SE3>& poses) const
 {
   if (poses.empty()) {
     return;
   }
-  found.track.begin(kept_, poses, keyframes);
+  found.track.begin(kept_, poses, keyframes_);
   found.poses.clear();
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);

@@ -2,47 +2,58 @@
 /// The first sweeps, until it is settled how the sensor began to move.
 #pragma once
 
-#include "odometry/hypotheses.h"
+#include "odometry/backward_pass.h"
+#include "odometry/candidate_motions.h"
 
 #include <vector>
 
 namespace pcl_floam {
 
-/// Settings of a track for each way in which time may run in sweeps; one if that is known.
-[[nodiscard]] std::vector<TrackSettings> eachDirection(const TrackSettings& settings, bool is_known);
-
-/// The first two sweeps hardly tell how the sensor moves on an open road. So several motions are followed for the first
-/// sweeps, each by a track of its own, and the one that explains them best stays.
+/// The first two sweeps hardly tell how the sensor moved on an open road. So several motions are followed for the first
+/// sweeps, each by a track of its own, and the one that explains them best stays. What takes longer than a sweep's
+/// share
+/// (\ref TrackSettings::start_effort) is left to the next ones.
 class Start {
 public:
   explicit Start(const Sweep& first) : kept_{first} {}
 
-  /// Looks for motions from the first sweep to the second, and keeps that if there are any.
-  /// \param[out] hypotheses a track for each motion; none if the sweeps do not fit
-  /// \return the registration of the likeliest
+  /// Looks for a motion from the first sweep to the second, and keeps that if there is one.
+  /// \param[out] hypotheses a track for it; none if the sweeps do not fit
   SurfaceRegistration findMotion(const Sweep& second, const TrackSettings& settings, Hypotheses& hypotheses);
 
-  /// The hypotheses take the next sweep.
+  /// The hypotheses take the next sweep, and the start goes on.
   /// \return whether any goes on; else the sweep is not kept
   bool step(const Sweep& sweep, Hypotheses& hypotheses);
 
+  /// Whether there may be other motions that have not been tried.
+  [[nodiscard]] bool isSearching() const { return candidates_ && !candidates_->areTried(); }
   /// Whether others explain the sweeps about as well for longer than the first ones usually need to tell.
   [[nodiscard]] bool isUndecided(const Hypotheses& hypotheses) const;
-
-  /// Whether one motion is left, or no more sweeps are waited for.
-  [[nodiscard]] bool isOver(const Hypotheses& hypotheses) const;
-
-  /// The best hypothesis of each direction of time stays, its first sweeps where its last ones say they were. Where a
-  /// motion leaves no trace, the least is as good as any.
-  void settle(Hypotheses& hypotheses) const;
+  /// Whether the best hypothesis of each direction of time is left, its first sweeps where its last ones say they were.
+  [[nodiscard]] bool isSettled() const { return is_settled_; }
 
 private:
-  void suppose(const std::vector<Vector6>& motions, std::vector<Track> tracks, const Sweep& second,
-               SurfaceRegistration& first_found, Hypotheses& hypotheses) const;
+  struct Revision {
+    std::size_t number = 0;  // of the hypothesis
+    BackwardPass pass;
+    bool is_done = false;
+  };
+
+  [[nodiscard]] bool isDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
-  void beginAgain(Hypothesis& found, const std::vector<SE3>& poses, const std::vector<bool>& keyframes) const;
+  void follow(const Sweep& sweep, Hypotheses& hypotheses);
+  void beginRevision(Hypotheses& hypotheses);
+  void revise(Hypotheses& hypotheses);
+  void settle(Hypotheses& hypotheses);
+  [[nodiscard]] std::vector<SE3> revisedPoses(const Hypothesis& hypothesis, const BackwardPass& pass) const;
+  void beginAgain(Hypothesis& found, const std::vector<SE3>& poses) const;
 
   std::vector<Sweep> kept_;
+  std::optional<CandidateMotions> candidates_;
+  std::vector<Revision> revisions_;  // once it is decided how the sensor moved
+  std::vector<bool> keyframes_;      // among those kept, of all maps, once the revisions are known
+  bool leaves_no_trace_ = false;
+  bool is_settled_ = false;
 };
 
 }  // namespace pcl_floam

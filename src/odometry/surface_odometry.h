@@ -18,7 +18,7 @@ namespace pcl_floam {
 /// derived when they are given out.
 struct SurfaceOdometry : OdometryRun {
   SurfaceOdometry(const OdometryParameters& p, const OdometryComponents& c)
-      : OdometryRun(p, c), tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads, c})
+      : OdometryRun(p, c), tracker({p.compensation, p.registration.locked, p.map.horizon, p.threads, p.start_effort, c})
   {
   }
 

@@ -13,6 +13,7 @@ struct TrackSettings {
   DegreesOfFreedom locked = {};
   double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
   int threads = 1;
+  int start_effort = 4;  // registrations of one sweep's share of a start, beyond its own
   OdometryComponents components = {};
   double side = 0.0;  // m, of the map's finest cells; 0: not known yet
   /// Of time in sweeps of which it is not known: 1 as their points have it, -1 against it, 0 if they are of one

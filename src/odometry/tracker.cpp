@@ -112,7 +112,7 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
       outcome.registration = found;
     }
     if (found.report.hasConverged()) {
-      hypotheses_.add(std::move(track), found, {});
+      hypotheses_.add({std::move(track), found});
     }
   }
   if (isTracking()) {
@@ -150,8 +150,7 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
   }
   outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = may_correct_ && outcome.changed_track;
-  if (start_ && start_->isOver(hypotheses_)) {
-    start_->settle(hypotheses_);
+  if (start_ && start_->isSettled()) {
     start_.reset();
     outcome.corrected = true;
   }

@@ -47,8 +47,11 @@ public:
   [[nodiscard]] bool isUndecided() const { return isOpen() && start_->isUndecided(hypotheses_); }
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
-  /// Whether they may since several motions are followed.
-  [[nodiscard]] bool isAmbiguous() const { return may_correct_ && hypotheses_.size() > 1; }
+  /// Whether they may since several motions are followed, or sought.
+  [[nodiscard]] bool isAmbiguous() const
+  {
+    return may_correct_ && (hypotheses_.size() > 1 || (start_ && start_->isSearching()));
+  }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
   /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
   /// several tracks.

@@ -1,0 +1,115 @@
+#include "odometry/candidate_motions.h"
+
+#include <utility>
+
+namespace pcl_floam {
+
+std::vector<TrackSettings> eachDirection(const TrackSettings& settings, bool is_known)
+{
+  std::vector<TrackSettings> directions = {settings};
+  if (!is_known) {
+    for (const double other : {1.0, -1.0}) {
+      directions.push_back(settings);
+      directions.back().direction = other;
+    }
+  }
+  return directions;
+}
+
+CandidateMotions::CandidateMotions(const std::vector<Sweep>& kept, const TrackSettings& settings)
+    : search_(kept[0], kept[1], settings),
+      directions_(eachDirection(settings, kept[0].is_direction_known && kept[1].is_direction_known))
+{
+  suppose();
+}
+
+SurfaceRegistration CandidateMotions::followFirst(const std::vector<Sweep>& kept, Hypotheses& hypotheses)
+{
+  std::optional<SurfaceRegistration> first;
+  while (!areTried()) {
+    if (waiting_.empty()) {
+      search_.goOn(1);
+      suppose();
+      continue;
+    }
+    const SurfaceRegistration found = begin(kept);
+    if (late_) {
+      hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));
+      return found;
+    }
+    first = first ? first : found;
+  }
+  if (!first) {
+    first.emplace();
+    first->report.termination = Termination::too_few_correspondences;  // no motion is likely
+  }
+  return *first;
+}
+
+void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, Hypotheses& hypotheses)
+{
+  while (registrations > 0 && !areTried()) {
+    if (late_) {
+      late_->step(kept[late_->poses.size()], Rivals::motions, true);
+      registrations -= 1;
+    } else if (!waiting_.empty()) {
+      begin(kept);
+      registrations -= 2;  // its rounds
+    } else {
+      search_.goOn(static_cast<std::size_t>(registrations));
+      registrations = 0;
+      if (search_.isDone()) {
+        suppose();
+      }
+    }
+    compare(kept, hypotheses);
+  }
+}
+
+/// Those that have turned out to be likely wait to be tried.
+void CandidateMotions::suppose()
+{
+  for (const Vector6& motion : search_.motions().likely) {
+    if (isAmong(supposed_, motion, search_.same())) {
+      continue;
+    }
+    supposed_.push_back(motion);
+    for (std::size_t direction = 0; direction < directions_.size(); ++direction) {
+      waiting_.push_back({motion, direction});
+    }
+  }
+}
+
+SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
+{
+  constexpr double kOff = 0.25;  // m: what the likely motions may still be off, whichever way time runs
+  constexpr int kRounds = 2;
+  const Candidate candidate = waiting_.front();
+  waiting_.pop_front();
+  Track track(directions_[candidate.direction], search_.motions().open);
+  const SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds});
+  if (found.report.hasConverged()) {
+    const Vector6 twist = track.fractionOf(kept[0]) * track.motion().velocity();
+    late_.emplace(std::move(track), found);
+    late_->poses = {{SE3(), twist}, late_->track.pose()};
+    late_->evidences.assign(2, late_->track.evidence());
+  }
+  return found;
+}
+
+/// The late one with those that are followed.
+void CandidateMotions::compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses)
+{
+  if (!late_) {
+    return;
+  }
+  if (late_->is_lost || hypotheses.haveLeftBehind(*late_, kept)) {
+    late_.reset();
+  } else if (late_->poses.size() == kept.size()) {
+    hypotheses.dropLeftBehind(*late_, kept);
+    hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));
+    hypotheses.giveUp(hopeless(kept.back()), Rivals::motions);
+  }
+}
+
+}  // namespace pcl_floam
