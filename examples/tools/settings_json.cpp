@@ -54,6 +54,7 @@ Json toJson(const OdometryParameters& p)
                {"scan_period_s", p.scan_period},
                {"compensation", toString(p.compensation)},
                {"pose_instant", toString(p.pose_instant)},
+               {"start_effort", p.start_effort},
                {"threads", p.threads}};
   json["features"] = featuresJson(p.features);
   json["registration"] = registrationJson(p.registration);

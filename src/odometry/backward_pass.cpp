@@ -1,5 +1,7 @@
 #include "odometry/backward_pass.h"
 
+#include <algorithm>
+
 namespace pcl_floam {
 
 namespace {
@@ -19,43 +21,39 @@ Sweep backwards(const std::vector<Sweep>& kept, std::size_t k, std::size_t count
 
 BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
                            const TrackSettings& settings)
-    : back_(settings), poses_(forwards)
+    : back_(settings), count_(forwards.size())
 {
   constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
   std::vector<Sweep> sweeps;
   std::vector<SE3> last;
-  left_ = poses_.size() - kTrusted;
-  for (std::size_t k = poses_.size(); k-- > left_;) {
-    last.push_back(poses_[k]);
-    sweeps.push_back(backwards(kept, k, poses_.size()));
+  left_ = count_ - kTrusted;
+  found_.resize(left_);
+  for (std::size_t k = count_; k-- > left_;) {
+    last.push_back(forwards[k]);
+    sweeps.push_back(backwards(kept, k, count_));
   }
   back_.begin(sweeps, last, keyframesAmong(last, settings));
 }
 
 void BackwardPass::step(const std::vector<Sweep>& kept)
 {
-  const Sweep sweep = backwards(kept, --left_, poses_.size());
+  const Sweep sweep = backwards(kept, --left_, count_);
   if (!back_.step(sweep).report.hasConverged()) {
-    is_lost_ = true;
+    found_.clear();
     left_ = 0;
     return;
   }
   back_.updateMap(sweep);
-  poses_[left_] = back_.pose().middle;
+  found_[left_] = back_.pose();
 }
 
-std::vector<SE3> BackwardPass::poses(const std::vector<SE3>& forwards) const
+std::vector<SweepPose> BackwardPass::poses(std::vector<SweepPose> forwards) const
 {
-  if (is_lost_) {
+  if (found_.empty()) {
     return {};
   }
-  std::vector<SE3> poses = forwards;
-  std::copy(poses_.begin(), poses_.end(), poses.begin());
-  const SE3 first_T_world = poses[0].inverse();
-  for (SE3& pose : poses) {
-    pose = first_T_world * pose;
-  }
-  return poses;
+  std::copy(found_.begin(), found_.end(), forwards.begin());
+  return forwards;
 }
 
 }  // namespace pcl_floam

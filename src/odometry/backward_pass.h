@@ -19,14 +19,13 @@ public:
   [[nodiscard]] bool isDone() const { return left_ == 0; }
   /// Registers the next sweep before.
   void step(const std::vector<Sweep>& kept);
-  /// Of all sweeps, where the first one is the origin.
-  /// \param later poses of sweeps that came since it began, as they were found forwards
-  /// \return none if a sweep was not found
-  [[nodiscard]] std::vector<SE3> poses(const std::vector<SE3>& forwards) const;
+  /// Of all sweeps, those from the trusted ones on as they were found forwards; none if one was not found.
+  [[nodiscard]] std::vector<SweepPose> poses(std::vector<SweepPose> forwards) const;
 
 private:
   Track back_;
-  std::vector<SE3> poses_;  // of the first sweeps, as found backwards; those trusted forwards
+  std::vector<SweepPose> found_;  // before the trusted ones
+  std::size_t count_ = 0;         // of sweeps when it began
   std::size_t left_ = 0;
   bool is_lost_ = false;
 };

@@ -26,10 +26,14 @@ SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& 
 {
   kept_.push_back(second);
   candidates_.emplace(kept_, settings);
-  const SurfaceRegistration found = candidates_->followFirst(kept_, hypotheses);
+  SurfaceRegistration found = candidates_->followFirst(kept_, hypotheses);
   if (hypotheses.empty()) {
     kept_.pop_back();
     candidates_.reset();
+  } else {
+    constexpr int kOfTheFirst = 8;  // registrations with which that was found
+    candidates_->goOn(settings.start_effort - kOfTheFirst, kept_, hypotheses);
+    found = hypotheses.front().last;
   }
   return found;
 }
@@ -63,7 +67,7 @@ void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 
 bool Start::isUndecided(const Hypotheses& hypotheses) const
 {
-  return revisions_.empty() && kept_.size() >= kFirstSweeps && hypotheses.hasRivalsInDirection();
+  return revisions_.empty() && kept_.size() >= kFirstSweeps && (hypotheses.hasRivalsInDirection() || isSearching());
 }
 
 bool Start::isDecided(const Hypotheses& hypotheses) const
@@ -101,7 +105,8 @@ void Start::revise(Hypotheses& hypotheses)
   if (std::all_of(revisions_.begin(), revisions_.end(), [](const Revision& r) { return r.pass.isDone(); })) {
     return settle(hypotheses);
   }
-  const int each = std::max(settings.start_effort / static_cast<int>(revisions_.size()), 1);
+  const int passes = static_cast<int>(revisions_.size());
+  const int each = (settings.start_effort + passes - 1) / passes;
   eachSideBySide(settings.threads, revisions_.size(), [&](std::size_t i) {
     for (int n = 0; n < each && !revisions_[i].pass.isDone(); ++n) {
       revisions_[i].pass.step(kept_);
@@ -119,14 +124,14 @@ void Start::settle(Hypotheses& hypotheses)
                         [&](const Revision& r) { return r.number == hypothesis.number; });
   };
   if (keyframes_.empty()) {
-    const std::vector<SE3> poses = revisedPoses(all[0], revisionOf(all[0])->pass);
-    keyframes_ = keyframesAmong(poses.empty() ? middlesOf(all[0].poses) : poses, all[0].track.settings());
+    const std::vector<SweepPose> poses = revisionOf(all[0])->pass.poses(all[0].poses);
+    keyframes_ = keyframesAmong(middlesOf(poses.empty() ? all[0].poses : poses), all[0].track.settings());
   }
   const auto isLeft = [&](const Hypothesis& hypothesis) { return !revisionOf(hypothesis)->is_done; };
   const auto next = std::find_if(all.rbegin(), all.rend(), isLeft);
   if (next != all.rend()) {
     const auto revision = revisionOf(*next);
-    beginAgain(*next, revisedPoses(*next, revision->pass));
+    makeAgain(*next, revision->pass);
     if (leaves_no_trace_) {
       next->track.forgetAlong(next->last.report.weak_directions, static_cast<double>(kept_.size()));
     }
@@ -138,28 +143,17 @@ void Start::settle(Hypotheses& hypotheses)
   }
 }
 
-/// None if they are not known better; where there were several hypotheses, whose maps must not differ in what they took
-/// in, those that were found forwards.
-std::vector<SE3> Start::revisedPoses(const Hypothesis& hypothesis, const BackwardPass& pass) const
+/// Its map, with poses that are known better. If they are not, it stays as it is, unless there were several hypotheses:
+/// their maps must not differ in what they took in.
+void Start::makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const
 {
-  const std::vector<SE3> forwards = middlesOf(hypothesis.poses);
-  const std::vector<SE3> poses = pass.poses(forwards);
-  return poses.empty() && revisions_.size() > 1 ? forwards : poses;
-}
-
-/// With poses that are known better; none: as it is.
-void Start::beginAgain(Hypothesis& found, const std::vector<SE3>& poses) const
-{
-  if (poses.empty()) {
+  const std::vector<SweepPose> revised = pass.poses(hypothesis.poses);
+  if (!revised.empty()) {
+    hypothesis.poses = revised;
+  } else if (revisions_.size() == 1) {
     return;
   }
-  found.track.begin(kept_, poses, keyframes_);
-  found.poses.clear();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::size_t next = std::max<std::size_t>(i, 1);
-    const Vector6 velocity = log(poses[next - 1].inverse() * poses[next]) / kept_[next].periods;
-    found.poses.push_back({poses[i], found.track.fractionOf(kept_[i]) * velocity});
-  }
+  hypothesis.track.makeMap(kept_, hypothesis.poses, keyframes_);
 }
 
 }  // namespace pcl_floam

@@ -45,8 +45,7 @@ private:
   void beginRevision(Hypotheses& hypotheses);
   void revise(Hypotheses& hypotheses);
   void settle(Hypotheses& hypotheses);
-  [[nodiscard]] std::vector<SE3> revisedPoses(const Hypothesis& hypothesis, const BackwardPass& pass) const;
-  void beginAgain(Hypothesis& found, const std::vector<SE3>& poses) const;
+  void makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const;
 
   std::vector<Sweep> kept_;
   std::optional<CandidateMotions> candidates_;

@@ -131,6 +131,18 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
   }
 }
 
+void Track::makeMap(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
+                    const std::vector<bool>& keyframes)
+{
+  beginMap();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (keyframes[i]) {
+      map_->insert(sweeps[i], poses[i]);
+      keyframe_ = poses[i].middle;
+    }
+  }
+}
+
 SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map)
 {
   map_.emplace(std::move(map));

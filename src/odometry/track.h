@@ -48,6 +48,10 @@ public:
   /// \param keyframes of which the map is made
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
 
+  /// Its map is made anew of sweeps whose poses are known better by now, the last of which is its own.
+  void makeMap(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
+               const std::vector<bool>& keyframes);
+
   /// Begins in a map that was made before, of which the pose is roughly known.
   SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);
 

@@ -23,15 +23,30 @@ def milliseconds(entry):
     return entry["cpu_time"]
 
 
+MOST_SPREAD = 0.1  # of the reference, between its repeats
+
+
+def ratio(run):
+    if run["reference_spread"] > MOST_SPREAD:
+        return "not told: the reference varied by {:.0f} %".format(100.0 * run["reference_spread"])
+    return "**{:.2f}**".format(run["ratio"])
+
+
 def pipeline_table(benchmarks):
-    lines = ["| sequence | threads | median | p95 | reference | median / reference | p95 / reference |",
-             "|---|---|---|---|---|---|---|"]
+    """Times of scans; those beyond the median in medians."""
+    lines = ["| sequence | threads | median | reference | median / reference | 95 % | 99 % | 99.9 % | slowest |",
+             "|---|---|---|---|---|---|---|---|---|"]
     for group, runs in grouped(benchmarks, "pipeline").items():
         for name, run in runs.items():
-            lines.append("| {} | {} | {:.2f} ms | {:.2f} ms | {:.2f} ms | **{:.2f}** | {:.2f} |".format(
-                group, name.split()[0], run["median_ms"], run["p95_ms"], run["reference_ms"], run["ratio"],
-                run["p95_ratio"]))
+            lines.append("| {} | {} | {:.2f} ms | {:.2f} ms | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} ({}) |".format(
+                group, name.split()[0], run["median_ms"], run["reference_ms"], ratio(run), run["p95_medians"],
+                run["p99_medians"], run["p999_medians"], run["slowest_medians"], run["label"]))
     return lines
+
+
+def load_line(context):
+    loads = ", ".join("{:.2f}".format(load) for load in context.get("load_avg", []))
+    return "{} processors; load before (1, 5, 15 minutes): {}".format(context["num_cpus"], loads or "not known")
 
 
 def stage_table(benchmarks):
@@ -84,9 +99,10 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     with open(sys.argv[1]) as file:
-        benchmarks = json.load(file)["benchmarks"]
+        record = json.load(file)
+    benchmarks = record["benchmarks"]
     curves = growth(benchmarks)
-    lines = pipeline_table(benchmarks) + [""] + stage_table(benchmarks) + [""] + growth_table(curves)
+    lines = [load_line(record["context"]), ""] + pipeline_table(benchmarks) + [""] + stage_table(benchmarks) + [""] + growth_table(curves)
     with open(sys.argv[2], "w") as file:
         file.write("\n".join(lines) + "\n")
     print("\n".join(lines))

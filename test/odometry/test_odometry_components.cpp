@@ -1,5 +1,5 @@
 // Objects of one's own in the odometry: factors, keyframes, points, map.
-#include "map/voxel_pyramid.h"
+#include "support/counting_map.h"
 #include "support/moving_room.h"
 
 #include <pcl_floam/odometry/odometry.h>
@@ -126,53 +126,17 @@ TEST(OdometryComponents, WhatTheEngineHasNoUseForIsRefused)
   EXPECT_THROW(odometry.setComponents(components), std::invalid_argument);
 }
 #else
-/// The odometry's own map in a user's clothes.
-class CountingMap : public SurfaceMap {
-public:
-  explicit CountingMap(std::shared_ptr<std::atomic<int> > keyframes, double side = 1.0)
-      : keyframes_(std::move(keyframes)), map_(side)
-  {
-  }
-
-  [[nodiscard]] std::unique_ptr<SurfaceMap> makeEmpty(double side) const override
-  {
-    return std::make_unique<CountingMap>(keyframes_, side);
-  }
-  [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<CountingMap>(*this); }
-  [[nodiscard]] bool empty() const override { return map_.empty(); }
-  void clear() override { map_.clear(); }
-  void beginKeyframe() override
-  {
-    map_.beginKeyframe();
-    ++*keyframes_;
-  }
-  void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override
-  {
-    map_.insert(places, lasers, count);
-  }
-  void crop(const Eigen::Vector3d& center, double radius) override { map_.crop(center, radius); }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-            Surface* surfaces) const override
-  {
-    map_.find(places, lasers, count, surfaces);
-  }
-
-private:
-  std::shared_ptr<std::atomic<int> > keyframes_;
-  VoxelPyramid map_;
-};
-
 TEST(OdometryComponents, AMapOfOnesOwnServesAsTheOdometrysDoes)
 {
-  auto keyframes = std::make_shared<std::atomic<int> >(0);
+  const auto counts = std::make_shared<CountingMap::Counts>();
   OdometryComponents components;
-  components.map = std::make_shared<CountingMap>(keyframes);
+  components.map = std::make_shared<CountingMap>(counts);
   const auto own = reportsOf(components);
   const auto usual = reportsOf({});
   for (int k = 0; k < kFewScans; ++k) {
     EXPECT_TRUE(sameBits(own[k].world_T_sensor, usual[k].world_T_sensor)) << k;
   }
-  EXPECT_GT(*keyframes, 0);
+  EXPECT_GT(counts->keyframes, 0);
 }
 
 TEST(OdometryComponents, PointsOfOnesOwnChoiceAreRegistered)

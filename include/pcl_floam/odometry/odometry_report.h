@@ -48,10 +48,10 @@ struct OdometryReport {
   /// Seconds from the scan's stamp to that instant, as the points' times tell; 0 if they have none. Of a scan that is
   /// missing as of the one before.
   double since_stamp = 0.0;
-  /// The first two scans did not tell how the sensor moved (fast, among traffic; without times), and several tracks are
-  /// followed: the poses since then may yet be corrected, by more than `covariance` tells. Ends at the 48th scan at the
-  /// latest; mostly long before, as soon as one motion is left, and at the 24th where only the points' times are left
-  /// to be found out.
+  /// It is not decided yet how the sensor began to move: other motions than this one are still sought, a few each scan
+  /// (`start_effort`), or are followed beside it, since the first scans do not tell (fast, among traffic; without
+  /// times). The poses since the first scan may yet be corrected, by more than `covariance` tells. By default it ends
+  /// after some ten scans where one motion is found, else as soon as one is left.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
