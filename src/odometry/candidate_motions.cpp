@@ -56,8 +56,7 @@ void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, H
       begin(kept);
       registrations -= 2;  // its rounds
     } else {
-      search_.goOn(static_cast<std::size_t>(registrations));
-      registrations = 0;
+      registrations -= static_cast<int>(search_.goOn(static_cast<std::size_t>(registrations)));
       if (search_.isDone()) {
         suppose();
       }

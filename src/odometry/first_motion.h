@@ -28,8 +28,8 @@ public:
 
   /// Whether nothing is left to look at.
   [[nodiscard]] bool isDone() const { return looked_ == looks_.size(); }
-  /// Looks at the next few.
-  void goOn(std::size_t looks);
+  /// Looks at the next few. \return so many
+  std::size_t goOn(std::size_t looks);
   /// Of those found so far.
   [[nodiscard]] FirstMotions motions() const;
   /// m a period, within which two motions are one: a registration finds either from the other.

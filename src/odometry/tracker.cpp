@@ -17,8 +17,8 @@ constexpr double kMapSpacing = 0.3;
 /// sensor began to move: of the last five sweeps or so, in which nothing else differs, maps included.
 constexpr double kWrongDirection = 15.0;
 
-/// Sweeps after which the poses since the first one stay, whichever direction of time turns out to be right.
-constexpr std::size_t kMostCorrected = 24;
+/// Sweeps after the start's end until which all poses since the first one wait for the direction of time to be found.
+constexpr std::size_t kMostToFindDirection = 12;
 
 }  // namespace
 
@@ -152,9 +152,10 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
   outcome.corrected = may_correct_ && outcome.changed_track;
   if (start_ && start_->isSettled()) {
     start_.reset();
+    most_corrected_ = poses().size() + kMostToFindDirection;
     outcome.corrected = true;
   }
-  may_correct_ = start_ || (isAmbiguous() && poses().size() < kMostCorrected);
+  may_correct_ = start_ || (isAmbiguous() && poses().size() < most_corrected_);
   outcome.registration = hypotheses_.front().last;
   outcome.registration.report.target_T_source = track().pose().middle;
   return outcome;

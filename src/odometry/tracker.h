@@ -78,6 +78,7 @@ private:
   int failed_ = 0;              // sweeps that did not fit the first one
   Hypotheses hypotheses_;
   bool may_correct_ = false;
+  std::size_t most_corrected_ = 0;  // sweeps, after which no pose is
 };
 
 }  // namespace pcl_floam
