@@ -12,7 +12,7 @@ namespace pcl_floam {
 /// Finds the poses of the first sweeps with the map that the last ones make: those know better how the sensor moved.
 class BackwardPass {
 public:
-  /// \param kept sweeps
+  /// \param kept sweeps, more than the four that are trusted
   /// \param forwards poses that were found of them, of which the last ones are trusted
   BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards, const TrackSettings& settings);
 
@@ -27,7 +27,6 @@ private:
   std::vector<SweepPose> found_;  // before the trusted ones
   std::size_t count_ = 0;         // of sweeps when it began
   std::size_t left_ = 0;
-  bool is_lost_ = false;
 };
 
 }  // namespace pcl_floam

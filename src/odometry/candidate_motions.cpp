@@ -1,5 +1,6 @@
 #include "odometry/candidate_motions.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace pcl_floam {
@@ -68,7 +69,10 @@ void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, H
 /// Those that have turned out to be likely wait to be tried.
 void CandidateMotions::suppose()
 {
-  for (const Vector6& motion : search_.motions().likely) {
+  const std::vector<Vector6> likely = search_.motions().likely;
+  const auto isUnlikely = [&](const Candidate& c) { return !isAmong(likely, c.motion, search_.same()); };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isUnlikely), waiting_.end());
+  for (const Vector6& motion : likely) {
     if (isAmong(supposed_, motion, search_.same())) {
       continue;
     }

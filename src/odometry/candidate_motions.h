@@ -5,6 +5,7 @@
 #include "odometry/first_motion.h"
 #include "odometry/hypotheses.h"
 
+#include <cstddef>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -29,6 +30,8 @@ public:
   /// \param kept sweeps, all of which the hypotheses have taken
   void goOn(int registrations, const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
+  /// Whether some are known that are not tried yet.
+  [[nodiscard]] bool areWaiting() const { return late_ || !waiting_.empty(); }
   /// Whether all are.
   [[nodiscard]] bool areTried() const { return !late_ && waiting_.empty() && search_.isDone(); }
 

@@ -4,6 +4,7 @@
 
 #include "odometry/track.h"
 
+#include <cstddef>
 #include <vector>
 
 namespace pcl_floam {

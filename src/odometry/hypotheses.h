@@ -71,7 +71,7 @@ public:
   /// Those that once were so behind one that has caught up.
   void dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept);
 
-  /// Those that match no more, unless it is the only one.
+  /// Those that match no more, unless none does.
   void dropLost();
 
   /// \ref front becomes the one that is preferred.
@@ -79,6 +79,9 @@ public:
 
   /// Their evidence begins anew, so that what is left to tell is the direction.
   void keepOneOfEachDirection(Preference preference);
+
+  /// Whether there ever were.
+  [[nodiscard]] bool wereSeveral() const { return numbered_ > 1; }
 
   /// Whether the best one's direction of time has others.
   [[nodiscard]] bool hasRivalsInDirection() const;

@@ -39,7 +39,7 @@ void validate(const OdometryParameters& p)
   check.range("vertical_correction", p.vertical_correction, -10.0, 10.0);
   check.atLeast("scan_period", p.scan_period, 0.0);
   check.range("threads", p.threads, 1, 1024);
-  check.range("start_effort", p.start_effort, 1, 1000);
+  check.range("start_effort", p.start_effort, 2, 1000);
   check.atLeast("keyframe translation", p.keyframe.translation, 0.0);
   if (p.structure == ScanStructure::space && p.engine == OdometryEngine::features) {
     throw std::invalid_argument("odometry: structure is space, but the engine 'features' needs scan lines");

@@ -40,12 +40,11 @@ SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& 
 
 bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 {
-  const bool is_decided = !revisions_.empty();
-  if (!hypotheses.step(sweep, is_decided ? Rivals::directions : Rivals::motions, true)) {
+  if (!hypotheses.step(sweep, isDecided() ? Rivals::directions : Rivals::motions, true)) {
     return false;
   }
   kept_.push_back(sweep);
-  if (is_decided) {
+  if (isDecided()) {
     revise(hypotheses);
   } else {
     follow(sweep, hypotheses);
@@ -56,21 +55,26 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 {
   hypotheses.giveUp(hopeless(sweep), Rivals::motions);
-  candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
+  if (kept_.size() < kMostFirstSweeps) {
+    candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
+  } else {
+    candidates_.reset();
+  }
   if (leavesNoTrace(hypotheses)) {
     hypotheses.putFirst(Preference::least_motion);
   }
-  if (isDecided(hypotheses)) {
+  if (canBeDecided(hypotheses)) {
     beginRevision(hypotheses);
   }
 }
 
 bool Start::isUndecided(const Hypotheses& hypotheses) const
 {
-  return revisions_.empty() && kept_.size() >= kFirstSweeps && (hypotheses.hasRivalsInDirection() || isSearching());
+  const bool has_rivals = hypotheses.hasRivalsInDirection() || (candidates_ && candidates_->areWaiting());
+  return has_rivals && kept_.size() >= kFirstSweeps && !isDecided();
 }
 
-bool Start::isDecided(const Hypotheses& hypotheses) const
+bool Start::canBeDecided(const Hypotheses& hypotheses) const
 {
   const bool more_would_tell = hypotheses.hasRivalsInDirection() && !leavesNoTrace(hypotheses);
   return !isSearching() && kept_.size() >= (more_would_tell ? kMostFirstSweeps : kFirstSweeps);
@@ -98,10 +102,13 @@ void Start::beginRevision(Hypotheses& hypotheses)
 void Start::revise(Hypotheses& hypotheses)
 {
   hypotheses.dropLost();
+  keyframes_.push_back(hypotheses.tookIn());
+  const std::vector<Hypothesis>& all = hypotheses.all();
+  const auto isLost = [&](const Revision& revision) {
+    return std::none_of(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revision.number; });
+  };
+  revisions_.erase(std::remove_if(revisions_.begin(), revisions_.end(), isLost), revisions_.end());
   const TrackSettings& settings = hypotheses.front().track.settings();
-  if (!keyframes_.empty()) {
-    keyframes_.push_back(hypotheses.tookIn());
-  }
   if (std::all_of(revisions_.begin(), revisions_.end(), [](const Revision& r) { return r.pass.isDone(); })) {
     return settle(hypotheses);
   }
@@ -123,9 +130,12 @@ void Start::settle(Hypotheses& hypotheses)
     return std::find_if(revisions_.begin(), revisions_.end(),
                         [&](const Revision& r) { return r.number == hypothesis.number; });
   };
-  if (keyframes_.empty()) {
-    const std::vector<SweepPose> poses = revisionOf(all[0])->pass.poses(all[0].poses);
-    keyframes_ = keyframesAmong(middlesOf(poses.empty() ? all[0].poses : poses), all[0].track.settings());
+  if (keyframes_.size() < kept_.size()) {
+    const std::vector<SweepPose> revised = revisionOf(all[0])->pass.poses(all[0].poses);
+    std::vector<SE3> first = middlesOf(revised.empty() ? all[0].poses : revised);
+    first.resize(kept_.size() - keyframes_.size());
+    const std::vector<bool> among_first = keyframesAmong(first, all[0].track.settings());
+    keyframes_.insert(keyframes_.begin(), among_first.begin(), among_first.end());
   }
   const auto isLeft = [&](const Hypothesis& hypothesis) { return !revisionOf(hypothesis)->is_done; };
   const auto next = std::find_if(all.rbegin(), all.rend(), isLeft);

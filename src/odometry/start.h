@@ -5,14 +5,15 @@
 #include "odometry/backward_pass.h"
 #include "odometry/candidate_motions.h"
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace pcl_floam {
 
 /// The first two sweeps hardly tell how the sensor moved on an open road. So several motions are followed for the first
-/// sweeps, each by a track of its own, and the one that explains them best stays. What takes longer than a sweep's
-/// share
-/// (\ref TrackSettings::start_effort) is left to the next ones.
+/// sweeps, each by a track of its own, and the one that explains them best stays. What is more than a sweep's share of
+/// that (\ref TrackSettings::start_effort) is left to the sweeps that follow.
 class Start {
 public:
   explicit Start(const Sweep& first) : kept_{first} {}
@@ -27,6 +28,8 @@ public:
 
   /// Whether there may be other motions that have not been tried.
   [[nodiscard]] bool isSearching() const { return candidates_ && !candidates_->areTried(); }
+  /// Whether one is left: what remains is to find the first sweeps once more, from the last ones.
+  [[nodiscard]] bool isDecided() const { return !revisions_.empty(); }
   /// Whether others explain the sweeps about as well for longer than the first ones usually need to tell.
   [[nodiscard]] bool isUndecided(const Hypotheses& hypotheses) const;
   /// Whether the best hypothesis of each direction of time is left, its first sweeps where its last ones say they were.
@@ -39,7 +42,7 @@ private:
     bool is_done = false;
   };
 
-  [[nodiscard]] bool isDecided(const Hypotheses& hypotheses) const;
+  [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
   void follow(const Sweep& sweep, Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);
@@ -50,7 +53,7 @@ private:
   std::vector<Sweep> kept_;
   std::optional<CandidateMotions> candidates_;
   std::vector<Revision> revisions_;  // once it is decided how the sensor moved
-  std::vector<bool> keyframes_;      // among those kept, of all maps, once the revisions are known
+  std::vector<bool> keyframes_;      // those kept since then that the maps took in; in the end, of all
   bool leaves_no_trace_ = false;
   bool is_settled_ = false;
 };

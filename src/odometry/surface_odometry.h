@@ -23,7 +23,7 @@ struct SurfaceOdometry : OdometryRun {
   }
 
   Tracker tracker;
-  SE3 world_T_track;  ///< the track's origin is the first scan's mid-sweep
+  SE3 world_T_track;  ///< the track's origin is near the first scan's mid-sweep
   Sweep sweep;
   bool has_enough_points = false;
   FirstScans first_scans;  ///< until it is decided how the sensor moved
@@ -286,6 +286,11 @@ struct SurfaceOdometry : OdometryRun {
         map_building.add(features, {initial_pose}, parameters);
       }
       return;
+    }
+    const bool had_first_poses = tracker.mayCorrect() && !map_building.hasPrior();
+    tracker.keepBest();
+    if (had_first_poses) {
+      placeTrack();  // it may be another one
     }
     tracker.place(world_T_track.inverse() * world_T_sensor);
     told_motion.forget();

@@ -17,6 +17,9 @@ constexpr double kMapSpacing = 0.3;
 /// sensor began to move: of the last five sweeps or so, in which nothing else differs, maps included.
 constexpr double kWrongDirection = 15.0;
 
+/// Bad first sweeps must not hold up the rest for ever.
+constexpr int kMostFailures = 5;
+
 /// Sweeps after the start's end until which all poses since the first one wait for the direction of time to be found.
 constexpr std::size_t kMostToFindDirection = 12;
 
@@ -28,15 +31,19 @@ void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::v
   prior_map_ = {space, edges, guess, keeps_map};
 }
 
-void Tracker::place(const SE3& pose)
+void Tracker::keepBest()
 {
-  if (prior_map_) {
-    prior_map_->guess = pose;
-  }
   if (isTracking()) {
     hypotheses_.keepOneOfEachDirection(Preference::likeliest);
     start_.reset();
     may_correct_ = false;
+  }
+}
+
+void Tracker::place(const SE3& pose)
+{
+  if (prior_map_) {
+    prior_map_->guess = pose;
   }
   for (Hypothesis& hypothesis : hypotheses_.all()) {
     hypothesis.track.place(pose);
@@ -72,7 +79,7 @@ Tracker::Outcome Tracker::step(const Sweep& sweep)
   if (!isTracking()) {
     return begin(sweep);
   }
-  if (isOpen() || hypotheses_.size() > 1) {
+  if (start_ || hypotheses_.size() > 1) {
     return stepAll(sweep);
   }
   Outcome outcome;
@@ -123,7 +130,6 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
 
 Tracker::Outcome Tracker::beginWithSecond(const Sweep& sweep)
 {
-  constexpr int kMostFailures = 5;  // a bad first sweep must not hold up the rest for ever
   Outcome outcome;
   outcome.registration = start_->findMotion(sweep, settings_, hypotheses_);
   outcome.corrected = may_correct_ = isTracking();
@@ -141,8 +147,13 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
   const std::size_t before = hypotheses_.front().number;
   const bool goes_on =
       start_ ? start_->step(sweep, hypotheses_) : hypotheses_.step(sweep, Rivals::directions, may_correct_);
+  failed_ = goes_on ? 0 : failed_ + 1;
   if (!goes_on) {
     outcome.registration = hypotheses_.front().last;
+    if (start_ && failed_ == kMostFailures) {
+      start_.reset();  // a single track is sought again elsewhere
+      may_correct_ = false;
+    }
     return outcome;
   }
   if (!start_) {

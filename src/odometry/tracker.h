@@ -20,7 +20,10 @@ public:
   void localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
                   const SE3& guess, bool keeps_map);
 
-  /// The next sweep is sought around here; of several tracks the best one stays.
+  /// Of several tracks the best one of each direction of time stays, and no pose is corrected any more.
+  void keepBest();
+
+  /// The next sweep is sought around here.
   void place(const SE3& pose);
 
   struct Outcome {
@@ -42,15 +45,15 @@ public:
   /// Whether a motion is known.
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether it is not decided yet how the sensor began to move.
-  [[nodiscard]] bool isOpen() const { return start_ && isTracking(); }
+  [[nodiscard]] bool isOpen() const { return start_ && isTracking() && !start_->isDecided(); }
   /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well.
   [[nodiscard]] bool isUndecided() const { return isOpen() && start_->isUndecided(hypotheses_); }
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
-  /// Whether they may since several motions are followed, or sought.
+  /// Whether they may by much: several motions are or were followed, or are sought.
   [[nodiscard]] bool isAmbiguous() const
   {
-    return may_correct_ && (hypotheses_.size() > 1 || (start_ && start_->isSearching()));
+    return may_correct_ && (hypotheses_.size() > 1 || (start_ && (start_->isSearching() || hypotheses_.wereSeveral())));
   }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
   /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
@@ -75,7 +78,7 @@ private:
   SpatialSampling sampling_;
   std::optional<PriorMap> prior_map_;
   std::optional<Start> start_;  // from the first sweep until it is settled
-  int failed_ = 0;              // sweeps that did not fit the first one
+  int failed_ = 0;              // sweeps in a row that did not fit the first ones
   Hypotheses hypotheses_;
   bool may_correct_ = false;
   std::size_t most_corrected_ = 0;  // sweeps, after which no pose is

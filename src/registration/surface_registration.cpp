@@ -147,10 +147,11 @@ private:
     return withoutLocked(Square6(known.inverse()));
   }
 
+  /// Symmetric to the bit: it is the next sweep's prior, and what rounding left would grow from sweep to sweep.
   [[nodiscard]] Square12 posterior() const
   {
-    const Equations equations = equationsOf(known_);
-    return withoutLocked(Square12(equations.information.inverse()));
+    const Square12 covariance = equationsOf(known_).information.inverse();
+    return withoutLocked(Square12(0.5 * (covariance + covariance.transpose())));
   }
 
   /// As if they were known.

@@ -58,7 +58,7 @@ TEST(StartEffort, NoScanBearsManyTimesAsMuchAsAnother)
 
 TEST(StartEffort, DecidesWhenTheStartIsSettledNotHow)
 {
-  const StartedRun little = runWith(1);
+  const StartedRun little = runWith(2);
   const StartedRun usual = runWith(OdometryParameters().start_effort);
   const StartedRun all = runWith(kAllAtOnce);
   EXPECT_GT(little.provisional, usual.provisional);
@@ -72,7 +72,7 @@ TEST(StartEffort, DecidesWhenTheStartIsSettledNotHow)
 TEST(StartEffort, OutOfRangeIsRefused)
 {
   OdometryParameters parameters = defaults();
-  for (const int effort : {0, kAllAtOnce + 1}) {
+  for (const int effort : {1, kAllAtOnce + 1}) {
     parameters.start_effort = effort;
     EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
   }
