@@ -23,7 +23,6 @@ BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3
                            const TrackSettings& settings)
     : back_(settings), count_(forwards.size())
 {
-  constexpr std::size_t kTrusted = 4;  // last sweeps, whose poses the others are found from
   std::vector<Sweep> sweeps;
   std::vector<SE3> last;
   left_ = count_ - kTrusted;

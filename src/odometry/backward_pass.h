@@ -12,8 +12,10 @@ namespace pcl_floam {
 /// Finds the poses of the first sweeps with the map that the last ones make: those know better how the sensor moved.
 class BackwardPass {
 public:
-  /// \param kept sweeps, more than the four that are trusted
-  /// \param forwards poses that were found of them, of which the last ones are trusted
+  static constexpr std::size_t kTrusted = 4;  ///< last poses, from which the others are found
+
+  /// \param kept sweeps
+  /// \param forwards poses that were found of the first of them, more than those that are trusted
   BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards, const TrackSettings& settings);
 
   [[nodiscard]] bool isDone() const { return left_ == 0; }

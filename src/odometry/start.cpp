@@ -12,6 +12,8 @@ namespace {
 /// Sweeps until it is decided how it began: if one motion is left by then, and at most.
 constexpr std::size_t kFirstSweeps = 12;
 constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
+/// Sweeps until which motions are tried that have not been yet.
+constexpr std::size_t kMostTriedSweeps = 2 * kMostFirstSweeps;
 
 std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 {
@@ -55,7 +57,7 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 {
   hypotheses.giveUp(hopeless(sweep), Rivals::motions);
-  if (kept_.size() < kMostFirstSweeps) {
+  if (kept_.size() < kMostTriedSweeps) {
     candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
   } else {
     candidates_.reset();
@@ -94,8 +96,9 @@ void Start::beginRevision(Hypotheses& hypotheses)
   leaves_no_trace_ = leavesNoTrace(hypotheses);
   hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
   for (const Hypothesis& hypothesis : hypotheses.all()) {
-    revisions_.push_back(
-        {hypothesis.number, BackwardPass(kept_, middlesOf(hypothesis.poses), hypothesis.track.settings())});
+    std::vector<SE3> first = middlesOf(hypothesis.poses);  // those found with a young map, and some that are trusted
+    first.resize(std::min(first.size(), kFirstSweeps + BackwardPass::kTrusted));
+    revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
   }
 }
 

@@ -36,11 +36,11 @@ struct OdometryParameters {
   KeyframePolicy keyframe;
   MapParameters map;
   int threads = 1;  ///< 1 or more; the result does not depend on it
-  /// Registrations that the start adds to those of one scan, by surfaces: it seeks first motions, follows several and
-  /// goes back over the first scans, and what is more is left to the scans that follow, whose poses are provisional
-  /// until then. 1 to 1000; counted, not timed, so that the result does not depend on the machine. Default 4: no scan
-  /// takes more than a few times as long as another. Where nothing has to keep pace, 1000 seeks all with the second
-  /// scan.
+  /// Registrations of a start, by surfaces, that one scan bears beside those of the motions that are followed: others
+  /// are sought and tried, and the first scans are gone through once more from the last ones. What is more is left to
+  /// the scans that follow, whose poses are provisional until then. 2 to 1000; counted, not timed, so that the result
+  /// does not depend on the machine. Default 4: few scans take more than some times as long as another. Where nothing
+  /// has to keep pace, 1000 seeks all with the second scan.
   int start_effort = 4;
 };
 
