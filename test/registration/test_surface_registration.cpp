@@ -58,6 +58,16 @@ TEST(SurfaceRegistration, FindsAKnownPose)
   }
 }
 
+/// It is the next sweep's prior: what were left would grow from sweep to sweep, until the prior pushes away.
+TEST(SurfaceRegistration, ThePosteriorIsSymmetricToTheBit)
+{
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const Corner corner(3);
+  const SurfaceRegistration found = registerSurfaces(problemOf(points, corner));
+  ASSERT_TRUE(found.report.hasConverged());
+  EXPECT_EQ(found.posterior, found.posterior.transpose());
+}
+
 TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
 {
   std::mt19937 random(9);
