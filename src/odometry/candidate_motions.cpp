@@ -33,7 +33,7 @@ SurfaceRegistration CandidateMotions::followFirst(const std::vector<Sweep>& kept
       suppose();
       continue;
     }
-    const SurfaceRegistration found = begin(kept);
+    SurfaceRegistration found = begin(kept);
     if (late_) {
       hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));
       return found;
@@ -90,7 +90,7 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   const Candidate candidate = waiting_.front();
   waiting_.pop_front();
   Track track(directions_[candidate.direction], search_.motions().open);
-  const SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds});
+  SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds});
   if (found.report.hasConverged()) {
     const Vector6 twist = track.fractionOf(kept[0]) * track.motion().velocity();
     late_.emplace(std::move(track), found);
