@@ -1,5 +1,5 @@
 /// \file backward_pass.h
-/// The first sweeps once more, from the last one.
+/// The first sweeps once more, from later ones.
 #pragma once
 
 #include "odometry/track.h"
@@ -9,7 +9,7 @@
 
 namespace pcl_floam {
 
-/// Finds the poses of the first sweeps with the map that the last ones make: those know better how the sensor moved.
+/// Finds the poses of the first sweeps with the map that later ones make: those know better how the sensor moved.
 class BackwardPass {
 public:
   static constexpr std::size_t kTrusted = 4;  ///< last poses, from which the others are found

@@ -49,6 +49,7 @@ public:
   [[nodiscard]] Hypothesis& front() { return all_.front(); }
   [[nodiscard]] std::vector<Hypothesis>& all() { return all_; }
 
+  /// Follows another.
   void add(Hypothesis added);
 
   /// Each takes the next sweep. Each map takes in its own keyframes while rivals are motions, else all the same ones: a
@@ -71,7 +72,7 @@ public:
   /// Those that once were so behind one that has caught up.
   void dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept);
 
-  /// Those that match no more, unless none does.
+  /// Those that match no more, unless all do.
   void dropLost();
 
   /// \ref front becomes the one that is preferred.
@@ -80,7 +81,7 @@ public:
   /// Their evidence begins anew, so that what is left to tell is the direction.
   void keepOneOfEachDirection(Preference preference);
 
-  /// Whether there ever were.
+  /// Whether more than one was ever followed.
   [[nodiscard]] bool wereSeveral() const { return numbered_ > 1; }
 
   /// Whether the best one's direction of time has others.
