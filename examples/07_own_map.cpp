@@ -2,13 +2,13 @@
 //
 //   ./07_own_map SCANS
 // prints
-//   000019.pcd: tracked, at      1.31605 -0.00151517  0.00196819
+//   000019.pcd: tracked, at       1.3101 -0.00248991  0.00827797
 #include <pcl/filters/voxel_grid_covariance.h>
 #include "each_scan.h"
 
 class NdtMap : public pcl_floam::SurfaceMap {
   using Cells = pcl::VoxelGridCovariance<pcl::PointXYZ>;
-  static constexpr float kSide = 1.0F;  // m
+  static constexpr float kSide = 1.5F;  // m
   static constexpr int kFewest = 6;     // points of a plane; more are not surer, as a cell so wide is not flat
   pcl::PointCloud<pcl::PointXYZ> points_;
   std::shared_ptr<Cells> cells_;

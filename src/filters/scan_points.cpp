@@ -12,6 +12,11 @@ namespace pcl_floam {
 
 namespace {
 
+/// Without scan lines: what is measured in one go, as points of a cloud follow each other, is one curve on what it
+/// hits, as that of a laser; a pattern that returns to a place has drawn another one meanwhile. As many as supports
+/// tell apart.
+constexpr std::size_t kCurves = 64;
+
 /// \return 1, or 0 if the point is out of range
 inline std::size_t take(const CloudView& cloud, const RangeLimits& squared, std::size_t i, std::size_t n,
                         ReturnBatch& batch)
@@ -69,10 +74,11 @@ void ReturnReader::readLine(ReturnBatch& batch)
 
 void ReturnReader::readCloud(ReturnBatch& batch)
 {
-  const std::size_t end = std::min(returns_.cloud.size, place_ + ReturnBatch::kMost);
+  const std::size_t size = returns_.cloud.size;
+  const std::size_t end = std::min(size, place_ + ReturnBatch::kMost);
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
-      batch.laser[batch.count] = static_cast<std::uint32_t>(place_);
+      batch.laser[batch.count] = static_cast<std::uint32_t>(kCurves * place_ / size);
       batch.place[batch.count] = -1;
       batch.count += take(returns_.cloud, limits_, place_, batch.count, batch);
     }

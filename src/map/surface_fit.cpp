@@ -18,8 +18,6 @@ constexpr double kFlat = 0.05;
 /// Points of one laser lie on its cone, of two on a plane if there is one; any two lasers' points make a line.
 constexpr int kLasersOfPlane = 2;
 constexpr int kLasersOfLine = 3;
-/// The variance of what fills a cell evenly is its squared side over 12.
-constexpr double kEven = 12.0;
 
 Eigen::Vector3d meanOf(const CellSums& s)
 {
@@ -31,6 +29,17 @@ Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
   Eigen::Matrix3d outer;
   outer << s.outer[0], s.outer[1], s.outer[2], s.outer[1], s.outer[3], s.outer[4], s.outer[2], s.outer[4], s.outer[5];
   return outer / s.count - mean * mean.transpose();
+}
+
+/// What fills a cell evenly goes on beyond it, and tells nothing of the way along it: its variance is the squared side
+/// over 12.
+Eigen::Matrix3d feltAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& variance, double side)
+{
+  constexpr double kEven = 12.0;
+  constexpr double kChance = 1.25;  // as few points vary by chance
+  const Eigen::Array3d filled = kEven / (side * side) * variance.array();
+  const Eigen::Vector3d felt = (1.0 - kChance * filled).max(0.0);
+  return axes * felt.asDiagonal() * axes.transpose();
 }
 
 std::array<float, 3> single(const Eigen::Vector3d& v)
@@ -55,12 +64,7 @@ void CellSums::add(double x, double y, double z, std::uint32_t laser)
   ++count;
 }
 
-Eigen::Matrix3d CellSums::filled(double side) const
-{
-  return kEven / (side * side) * covarianceOf(*this, meanOf(*this));
-}
-
-CellFit fitOf(const CellSums& sums, SurfaceShapes shapes)
+CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
 {
   CellFit fit;
   const int lasers = __builtin_popcountll(sums.lasers);
@@ -87,10 +91,10 @@ CellFit fitOf(const CellSums& sums, SurfaceShapes shapes)
     shape.thickness = static_cast<float>(variance[0]);
     shape.extent = static_cast<float>(variance[1]);
     const std::array<float, 3> wide = single(eigen.eigenvectors().col(2));
-    fit.axes = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
+    fit.along = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
   } else {
     fit.kind = SurfaceKind::point;
-    Eigen::Map<Eigen::Matrix3f>(fit.axes.data()) = eigen.eigenvectors().cast<float>();
+    Eigen::Map<Eigen::Matrix3f>(fit.along.data()) = feltAmong(eigen.eigenvectors(), variance, side).cast<float>();
   }
   return fit;
 }

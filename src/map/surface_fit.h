@@ -25,9 +25,6 @@ struct CellSums {
   std::uint32_t count = 0;
 
   void add(double x, double y, double z, std::uint32_t laser);
-
-  /// Covariance over that of points that fill a cell of \p side evenly.
-  [[nodiscard]] Eigen::Matrix3d filled(double side) const;
 };
 
 /// A plane or a line: what the sums tell of it. The mean is from the sums' origin.
@@ -41,12 +38,13 @@ struct CellShape {
 struct CellFit {
   SurfaceKind kind = SurfaceKind::unknown;
   CellShape shape;
-  /// Of what is neither plane nor line, its principal directions, one after the other; of a plane its longer direction
-  /// and the variance along that.
-  std::array<float, 9> axes{};
+  /// Of what is neither plane nor line, which displacements are felt among its points (\ref Surface::felt); of a plane
+  /// its longer direction and the variance along that.
+  std::array<float, 9> along{};
 };
 
 /// A shape that chance or the sampling pattern of a single laser would give is none.
-[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes);
+/// \param side m, of the cell
+[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side);
 
 }  // namespace pcl_floam

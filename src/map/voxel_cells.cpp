@@ -63,7 +63,6 @@ void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint
   for (; cell != 0; cell = cells_[cell].parent) {
     constexpr std::uint32_t kMost = std::numeric_limits<std::uint16_t>::max();
     CellSums& sums = contents_[cell].sums;
-    contents_[cell].felt_beside.store(0, std::memory_order_relaxed);
     sums.add(p.x(), p.y(), p.z(), laser);
     cells_[cell].support.add(laser, keyframe);
     cells_[cell].count = static_cast<std::uint16_t>(std::min(sums.count, kMost));

@@ -50,25 +50,8 @@ public:
   /// What else there is to it; first what a search for the nearest point reads.
   struct alignas(64) Content {
     std::array<std::uint32_t, 8> child{};  ///< of a finest cell the first is its points; 0: none
-    /// Of a shape that is neither plane nor line: how much is felt along each of its axes, known for so many points of
-    /// the parent, and one.
-    mutable std::array<double, 3> felt{};
-    mutable std::atomic<std::uint32_t> felt_beside{0};
-    mutable std::array<float, 9> axes{};
+    mutable std::array<float, 9> along{};  ///< \ref CellFit::along, known as the shape is
     CellSums sums;
-
-    Content() = default;
-    ~Content() = default;
-    Content(const Content& other) : Content() { *this = other; }
-    Content& operator=(const Content& other)
-    {
-      child = other.child;
-      felt = other.felt;
-      axes = other.axes;
-      sums = other.sums;
-      felt_beside.store(other.felt_beside.load());
-      return *this;
-    }
   };
   /// The points of a finest cell, from the centre of its block, m. Those that are not there are infinitely far.
   struct alignas(64) Leaf {

@@ -73,18 +73,16 @@ private:
   struct Fit {
     SurfaceKind kind;
     const CellShape& shape;
-    const std::array<float, 9>& axes;
+    const std::array<float, 9>& along;
   };
 
   bool findPlace(const Eigen::Vector3d& point, Place& place) const;
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
   bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
-  Fit fitOf(std::uint32_t cell, CellFit& own) const;
+  Fit fitOf(Found found, CellFit& own) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
   void surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const;
-  [[nodiscard]] Eigen::Matrix3d feltIn(Found found, const std::array<float, 9>& axes) const;
-  [[nodiscard]] Eigen::Vector3d feltAlong(const Eigen::Matrix3d& axes, Found found) const;
   [[nodiscard]] bool isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const;
   void findNearest(Found cell, const Eigen::Vector3f& center, const Eigen::Vector3f& offset, Nearest& nearest) const;
   static void findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest);

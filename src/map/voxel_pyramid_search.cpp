@@ -3,7 +3,6 @@
 #include "map/voxel_pyramid.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace pcl_floam {
 
@@ -54,22 +53,22 @@ Eigen::Vector3f VoxelPyramid::centerOf(const Place& place, int level) const
 
 /// A thread that finds a fit in the making works it out for itself rather than wait.
 /// \param own room for it then
-VoxelPyramid::Fit VoxelPyramid::fitOf(std::uint32_t number, CellFit& own) const
+VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
 {
-  const VoxelCells::Cell& cell = cells_[number];
+  const VoxelCells::Cell& cell = cells_[found.cell];
+  const VoxelCells::Content& content = cells_.content(found.cell);
   std::uint8_t state = cell.state.load(std::memory_order_acquire);
   if (state >= VoxelCells::kKnown) {
-    return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, cells_.content(number).axes};
+    return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, content.along};
   }
-  const VoxelCells::Content& content = cells_.content(number);
-  own = pcl_floam::fitOf(content.sums, shapes_);
+  own = pcl_floam::fitOf(content.sums, shapes_, sideOf(found.level));
   if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
     cell.shape = own.shape;
-    content.axes = own.axes;
+    content.along = own.along;
     cell.state.store(static_cast<std::uint8_t>(VoxelCells::kKnown + static_cast<std::uint8_t>(own.kind)),
                      std::memory_order_release);
   }
-  return {own.kind, own.shape, own.axes};
+  return {own.kind, own.shape, own.along};
 }
 
 Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
@@ -89,7 +88,7 @@ void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t lase
     if (shapes_ != SurfaceShapes::lines && !cell.support.hasTwoBesides(laser, keyframe_)) {
       continue;
     }
-    const Fit fit = fitOf(found.cell, own);
+    const Fit fit = fitOf(found, own);
     if (fit.kind != SurfaceKind::unknown) {
       surfaceIn(found, place, fit, surface);
       return;
@@ -111,7 +110,7 @@ void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Su
     surface.direction.setZero();
     surface.thickness = static_cast<double>(squared_spacing_);
     surface.extent = 0.0;
-    surface.felt = feltIn(found, fit.axes);
+    surface.felt = Eigen::Map<const Eigen::Matrix3f>(fit.along.data()).cast<double>();
     return;
   }
   surface.center = block + Eigen::Vector3f(shape.mean.data()).cast<double>();
@@ -119,44 +118,9 @@ void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Su
   surface.thickness = static_cast<double>(shape.thickness);
   surface.extent = static_cast<double>(shape.extent);
   if (fit.kind == SurfaceKind::plane) {
-    surface.wide = Eigen::Vector3f(fit.axes.data()).cast<double>();
-    surface.width = static_cast<double>(fit.axes[3]);
+    surface.wide = Eigen::Vector3f(fit.along.data()).cast<double>();
+    surface.width = static_cast<double>(fit.along[3]);
   }
-}
-
-/// Which displacements are felt among the points of a cell.
-Eigen::Matrix3d VoxelPyramid::feltIn(Found found, const std::array<float, 9>& axes_of_cell) const
-{
-  constexpr std::uint32_t kBeingMade = std::numeric_limits<std::uint32_t>::max();
-  const Eigen::Matrix3d axes = Eigen::Map<const Eigen::Matrix3f>(axes_of_cell.data()).cast<double>();
-  const VoxelCells::Content& content = cells_.content(found.cell);
-  const std::uint32_t parent = cells_[found.cell].parent;
-  const std::uint32_t beside = parent == 0 ? 1 : cells_.content(parent).sums.count + 1;
-  std::uint32_t known = content.felt_beside.load(std::memory_order_acquire);
-  if (known == beside) {
-    return axes * Eigen::Vector3d(content.felt.data()).asDiagonal() * axes.transpose();
-  }
-  const Eigen::Vector3d felt = feltAlong(axes, found);
-  if (known != kBeingMade && content.felt_beside.compare_exchange_strong(known, kBeingMade)) {
-    Eigen::Map<Eigen::Vector3d>(content.felt.data()) = felt;
-    content.felt_beside.store(beside, std::memory_order_release);
-  }
-  return axes * felt.asDiagonal() * axes.transpose();
-}
-
-/// What fills a cell evenly, or goes on in the next greater one as in this, tells nothing of the way along it.
-Eigen::Vector3d VoxelPyramid::feltAlong(const Eigen::Matrix3d& axes, Found found) const
-{
-  constexpr double kChance = 1.25;  // as few points vary by chance
-  const auto along = [&](std::uint32_t cell, int level) {
-    return Eigen::Vector3d((axes.transpose() * cells_.content(cell).sums.filled(sideOf(level)) * axes).diagonal());
-  };
-  Eigen::Vector3d filled = along(found.cell, found.level);
-  const std::uint32_t parent = cells_[found.cell].parent;
-  if (parent != 0) {
-    filled = filled.cwiseMax(along(parent, found.level + 1));
-  }
-  return (1.0 - kChance * filled.array()).max(0.0);
 }
 
 /// Nearest cells first; those that lie farther off than what was found are left out.

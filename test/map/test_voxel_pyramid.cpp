@@ -114,28 +114,6 @@ TEST(VoxelPyramid, WhatFillsItsCellEvenlyTellsNothingOfTheWayAlong)
   EXPECT_GT(edge.felt(1, 1) + edge.felt(2, 2), 3.0 * edge.felt(0, 0));
 }
 
-/// A part of an edge that scan lines happened to hit is not its end.
-TEST(VoxelPyramid, WhatGoesOnBeyondItsCellIsNotFeltAlongIt)
-{
-  const auto feltAlong = [](double reach) {
-    VoxelPyramid map(kSide);
-    std::mt19937 random(4);
-    for (std::uint32_t i = 0; i < 8000; ++i) {
-      const double x = 0.5 * kSide + test::uniform(random, reach);
-      const double out = 0.15 + 0.3 + test::uniform(random, 0.3);
-      const bool is_hit = x < 0.0 || x > kSide || std::abs(x - 0.5 * kSide) < 0.2 * kSide;
-      if (is_hit) {
-        map.insert(i % 2 == 0 ? Eigen::Vector3d(x, out, 0.15) : Eigen::Vector3d(x, 0.15, out), i % 8);
-      }
-    }
-    const Surface edge = map.surfaceAt({0.5 * kSide, 0.2, 0.2}, kStranger);
-    EXPECT_EQ(edge.kind, SurfaceKind::point);
-    return edge.felt(0, 0);
-  };
-  EXPECT_GT(feltAlong(0.2 * kSide), 0.6);
-  EXPECT_LT(feltAlong(4.0 * kSide), 0.5);
-}
-
 TEST(VoxelPyramid, OfEdgesOnlyLinesAreTaken)
 {
   VoxelPyramid space(kSide);

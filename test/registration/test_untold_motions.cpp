@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -128,7 +129,48 @@ private:
   std::array<Eigen::Vector2d, 509> tilts_;
 };
 
+/// A point wherever three numbers are whole.
+class Lattice : public SurfaceSearch {
+public:
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = Surface();
+      surfaces[i].kind = SurfaceKind::point;
+      surfaces[i].center = places[i].array().round();
+      surfaces[i].count = 20;
+    }
+  }
+};
+
 }  // namespace
+
+/// Against what is known otherwise, or told by surfaces, they count for less than their residuals say.
+TEST(UntoldMotions, NearestPointsTellSomeByChance)
+{
+  std::vector<ScanPoint> points;
+  for (int i = -5; i <= 5; ++i) {
+    for (int j = -5; j <= 5; ++j) {
+      for (const int axis : {0, 1, 2}) {
+        Eigen::Vector3f place(static_cast<float>(i), static_cast<float>(j), 3.0F);
+        std::swap(place[2], place[axis]);
+        points.emplace_back();
+        points.back().x = place.x();
+        points.back().y = place.y();
+        points.back().z = place.z();
+      }
+    }
+  }
+  const Lattice lattice;
+  const SurfaceRegistration found = registerSurfaces(problemOf(points, lattice));
+  ASSERT_TRUE(found.report.hasConverged());
+  constexpr double kRangeNoise = 0.02;  // m, of each
+  const double as_residuals = static_cast<double>(points.size()) / (kRangeNoise * kRangeNoise);
+  EXPECT_LT(found.report.information(0, 0), 0.9 * as_residuals);
+  EXPECT_GT(found.report.information(0, 0), 0.5 * as_residuals);
+}
 
 /// Also a first motion, of which nothing else is known than where it is looked for.
 TEST(UntoldMotions, NoiseDoesNotMoveThePoseAlongThem)
