@@ -11,8 +11,8 @@ namespace pcl_floam {
 
 namespace {
 
-/// A surface of a map is borne out by two or three lasers. Where there are not many more, hardly any is, and the
-/// returns are taken one by one.
+/// A surface of a map is borne out by two or three lasers. Where there are not many more, hardly any is, and parts
+/// of the sweep are taken for lasers.
 constexpr std::size_t kFewestLines = 5;
 
 }  // namespace

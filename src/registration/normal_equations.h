@@ -32,7 +32,8 @@ inline constexpr double kSmallestKernelScale = 0.05;
 struct NormalEquations {
   Matrix6 information = Matrix6::Zero();  ///< H = sum w J^T J
   /// The part of H that noise makes: that of the planes' normals, sum w J^T J with J of the normals' tilts, and by
-  /// surfaces of the lines' directions. Along a smooth corridor there is nothing else in H.
+  /// surfaces of the lines' directions, too, and a share of what nearest points tell. Along a smooth corridor there is
+  /// nothing else in H.
   Matrix6 noise_information = Matrix6::Zero();
   Matrix6 coupling = Matrix6::Zero();           ///< sum w s J^T J: of pose and twist
   Matrix6 twist_information = Matrix6::Zero();  ///< sum w s^2 J^T J

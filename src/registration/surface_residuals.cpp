@@ -21,7 +21,8 @@ constexpr double kDirectionError = 6e-4;
 /// All of a laser's points share it: of a plane it is the fewest lasers that count, not their points.
 constexpr double kLasersOfAPlane = 3.0;
 /// Part of what nearest points tell that chance tells as well: which of a map's points is nearest changes with what it
-/// happens to have kept. Between a tenth and a fifth it hardly matters.
+/// happens to have kept. Between a tenth and a fifth it hardly matters. Like all noise it is taken for more than its
+/// mean.
 constexpr double kNearestByChance = 0.15;
 /// Width of the kernel in standard deviations (Geman and McClure): beyond it a residual hardly counts.
 constexpr double kKernelWidth = 2.0;

@@ -77,8 +77,7 @@ TEST(SurfaceRegistration, WhatLiesOnAStraightRunTellsHardlyAnythingAlongIt)
   }
 }
 
-/// A short run, as of a post three returns wide, pulls as much as it tells: against a prior that counts about as much
-/// lines and points come to the same pose.
+/// A short run, as of a post three returns wide, pulls as much as it tells, against a prior that counts about as much.
 TEST(SurfaceRegistration, OfAShortRunPullAndInformationBelongTogether)
 {
   constexpr double kOff = 0.01;  // m

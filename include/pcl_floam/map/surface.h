@@ -22,8 +22,8 @@ struct Surface {
   SurfaceKind kind = SurfaceKind::unknown;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();     ///< m, world frame: mean of its points; for `point` the nearest
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit: the plane's normal or the line's direction
-  /// Of a `point`: which displacements are felt there, 0 to 1 by direction. What fills its cell evenly goes on beyond
-  /// it, and tells nothing of the way along it.
+  /// Of a `point`: which displacements are felt there, 0 to 1 by direction; some of that is chance, and counted as
+  /// such. What fills its cell evenly goes on beyond it, and tells nothing of the way along it.
   Eigen::Matrix3d felt = Eigen::Matrix3d::Identity();
   double thickness = 0.0;   ///< m^2: variance of its points across it; for `point` the squared spacing of the points
   double extent = 0.0;      ///< m^2: variance of its points along it, in the shorter direction of a plane
@@ -45,7 +45,8 @@ public:
 
   /// The surface at each of \p count places; `unknown` where there is none. Safe to call from several threads.
   /// \param places   world frame, m; one that is not finite has none
-  /// \param lasers   the scan line that saw each: what that line itself drew is no support for its points
+  /// \param lasers   the scan line that saw each (without scan lines a part of the sweep): what it drew itself is no
+  ///                 support for its points
   /// \param surfaces room for \p count answers
   virtual void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
                     Surface* surfaces) const = 0;
