@@ -69,7 +69,7 @@ void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, H
 /// Those that have turned out to be likely wait to be tried.
 void CandidateMotions::suppose()
 {
-  const std::vector<Vector6> likely = search_.motions().likely;
+  const std::vector<Vector6> likely = search_.likelyMotions();
   const auto isUnlikely = [&](const Candidate& c) { return !isAmong(likely, c.motion, search_.same()); };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isUnlikely), waiting_.end());
   for (const Vector6& motion : likely) {
@@ -89,7 +89,7 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   constexpr int kRounds = 2;
   const Candidate candidate = waiting_.front();
   waiting_.pop_front();
-  Track track(directions_[candidate.direction], search_.motions().open);
+  Track track(directions_[candidate.direction]);
   SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds});
   if (found.report.hasConverged()) {
     const Vector6 twist = track.fractionOf(kept[0]) * track.motion().velocity();

@@ -84,9 +84,7 @@ FirstMotionSearch::FirstMotionSearch(const Sweep& first, const Sweep& second, co
   if (found_.empty()) {
     return;
   }
-  const std::vector<Eigen::Vector3d> open = hardlyKnown(information);
-  looks_ = looksAlong(open, second_);
-  open_ = open.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : open.front();
+  looks_ = looksAlong(hardlyKnown(information), second_);
 }
 
 std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<FirstLook>& looks)
@@ -124,22 +122,21 @@ double FirstMotionSearch::same() const
 }
 
 /// The few whose evidence is best and not hopelessly less than the best, no two of them the same.
-FirstMotions FirstMotionSearch::motions() const
+std::vector<Vector6> FirstMotionSearch::likelyMotions() const
 {
   constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 20.0;  // of thinned sweeps; where a scene is clear, false motions have 25 less and more
+  constexpr double kHopeless = 10.0;  // of thinned sweeps, whose points count as some 25 independent ones
   std::vector<Found> best_first = found_;
   std::stable_sort(best_first.begin(), best_first.end(),
                    [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
-  FirstMotions motions;
-  motions.open = open_;
+  std::vector<Vector6> likely;
   for (const Found& found : best_first) {
-    if (motions.likely.size() < kMostLikely && found.evidence > best_first.front().evidence - kHopeless &&
-        !isAmong(motions.likely, found.velocity, same())) {
-      motions.likely.push_back(found.velocity);
+    if (likely.size() < kMostLikely && found.evidence > best_first.front().evidence - kHopeless &&
+        !isAmong(likely, found.velocity, same())) {
+      likely.push_back(found.velocity);
     }
   }
-  return motions;
+  return likely;
 }
 
 bool isAmong(const std::vector<Vector6>& velocities, const Vector6& velocity, double same)

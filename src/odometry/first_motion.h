@@ -12,11 +12,6 @@ namespace pcl_floam {
 /// m a period: 40 m/s at ten sweeps a second.
 inline constexpr double kFastestMotion = 4.0;
 
-struct FirstMotions {
-  std::vector<Vector6> likely;  ///< velocities per period, the likeliest first; none if the sweeps do not fit at all
-  Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< the direction of which they tell least, in the sensor's axes
-};
-
 /// Whether one of some velocities is the same as another.
 [[nodiscard]] bool isAmong(const std::vector<Vector6>& velocities, const Vector6& velocity, double same);
 
@@ -31,8 +26,8 @@ public:
   [[nodiscard]] bool isDone() const { return looked_ == looks_.size(); }
   /// Looks at the next few. \return so many
   std::size_t goOn(std::size_t looks);
-  /// Of those found so far.
-  [[nodiscard]] FirstMotions motions() const;
+  /// Velocities per period, the likeliest of those found so far first; none if the sweeps do not fit at all.
+  [[nodiscard]] std::vector<Vector6> likelyMotions() const;
   /// m a period, within which two motions are one: a registration finds either from the other.
   [[nodiscard]] double same() const;
 
@@ -49,7 +44,6 @@ private:
   std::vector<FirstLook> looks_;  // along what is open
   std::size_t looked_ = 0;
   std::vector<Found> found_;
-  Eigen::Vector3d open_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace pcl_floam

@@ -184,7 +184,6 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   problem.wants_evidence = rivals != Rivals::none;
   if (rivals == Rivals::motions) {
     problem.is_rival = true;
-    problem.open = open_;
     problem.reach *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);

@@ -30,11 +30,7 @@ struct FirstLook {
 /// Predict, register, judge, update.
 class Track {
 public:
-  /// \param open along which its rivals have moved differently, in the sensor's axes (\ref SurfaceProblem::open)
-  explicit Track(const TrackSettings& settings, const Eigen::Vector3d& open = Eigen::Vector3d::Zero())
-      : settings_(settings), open_(open)
-  {
-  }
+  explicit Track(const TrackSettings& settings) : settings_(settings) {}
 
   /// The first two sweeps share one unknown motion: the first is undistorted with today's estimate of it, and the
   /// second registered with what comes out, again and again, looking less and less far. Tells the pose of the second
@@ -94,7 +90,6 @@ private:
   void update(const Sweep& sweep, const SurfaceRegistration& registration);
 
   TrackSettings settings_;
-  Eigen::Vector3d open_;
   std::optional<TrackMap> map_;
   mutable std::vector<SurfaceSums> room_;
   bool keeps_map_ = true;

@@ -225,7 +225,6 @@ private:
     residuals.reach = look * look * problem_.reach;
     residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
-    residuals.open = pose_.rotation * problem_.open;
     residuals.weighs_evidence = weighs_evidence_;
     residuals.threads = problem_.threads;
     return residuals.sumsOf(problem_.scan, problem_.edges, stride, parts_);

@@ -39,8 +39,6 @@ struct SurfaceProblem {
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   bool wants_evidence = false;   ///< else the result has none
-  /// Along which the poses whose evidence is compared differ, a unit vector in the sensor's axes; zero: anyhow.
-  Eigen::Vector3d open = Eigen::Vector3d::Zero();
   /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
   /// only what they do not tell is left to the prior.
   bool is_rival = false;
@@ -54,7 +52,7 @@ struct SurfaceRegistration {
   Vector6 velocity = Vector6::Zero();     ///< per period, in the sensor's axes
   Matrix12 posterior = Matrix12::Zero();  ///< of pose and velocity, as the prior's
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
-  /// anywhere within a metre; and half of how many more of those that tell of the open direction fit than do not.
+  /// anywhere within a metre.
   double evidence = 0.0;
   Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
   std::size_t points = 0;          ///< that took part

@@ -154,8 +154,8 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double by_direction = kDirectionError * kDirectionError * across * across;
   const double variance = kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
                           by_direction * (1.0 + lever / kLasersOfAPlane);
-  const double along_open = open.dot(plane.direction);
-  const double w = weight(r * r, variance, plane.direction, p, along_open * along_open, sums);
+  const double w = weight(r * r, variance, plane.direction, p, sums);
+  weighEvidence(r * r, variance, 1.0, sums);
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
@@ -181,9 +181,8 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double squared = first * first + second * second;
   const Eigen::Vector3d off =
       squared > 0.0 ? Eigen::Vector3d((first * other + second * along) / std::sqrt(squared)) : other;
-  const double in_other = open.dot(other);
-  const double in_along = open.dot(along);
-  const double w = weight(squared, variance, off, p, in_other * in_other + in_along * in_along, sums);
+  const double w = weight(squared, variance, off, p, sums);
+  weighEvidence(squared, variance, 2.0, sums);
   rows.add(other, p.arm, first, w, p.since_middle);
   rows.add(along, p.arm, second, w, p.since_middle);
   // Two points go into the line; its direction may be off to two sides.
@@ -215,20 +214,17 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   }
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
-  const double w = weight(length * length, variance, direction, p, open.dot(felt * open), sums);
+  const double w = weight(length * length, variance, direction, p, sums);
+  weighEvidence(off.dot(felt * off), variance, felt.trace(), sums);
   ++sums.equations.points;
   rows.add(felt, off, p.arm, w, p.since_middle);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
-/// \param told how much of the open direction the residual tells, in [0,1]. What tells nothing of it (the road) fits
-///             wherever the sensor is supposed to be along it, by errors that many share; so what does counts for more.
 double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
-                                double told, SurfaceSums& sums) const
+                                SurfaceSums& sums) const
 {
-  constexpr double kFits = 3.0;       // standard deviations
-  constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
-  constexpr double kTelling = 0.5;  // independent residuals that one counts as which tells of the open direction alone
+  constexpr double kFits = 3.0;  // standard deviations
   Eigen::Matrix<double, 6, 1> row;
   row << direction, p.arm.cross(direction);
   const double width = kKernelWidth * kKernelWidth * (variance + row.dot(reach * row));
@@ -238,15 +234,21 @@ double SurfaceResiduals::weight(double squared, double variance, const Eigen::Ve
   sums.equations.weight += robust / variance;
   sums.equations.squared_extent += robust / variance * p.arm.squaredNorm();
   sums.equations.weighted_squares += robust * squared;
+  sums.equations.plane_inliers += squared < kFits * kFits * variance ? 1 : 0;
   sums.robust_weight += robust;
-  const bool fits = squared < kFits * kFits * variance;
-  sums.equations.plane_inliers += fits ? 1 : 0;
-  if (weighs_evidence) {
-    const double density = std::exp(-0.5 * squared / variance) / std::sqrt(2.0 * M_PI * variance);
-    sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
-    sums.evidence += kTelling * (fits ? told : -told);
-  }
   return robust / variance;
+}
+
+/// A density, of all points that may be anywhere within a metre: so what fills its cell, and is near wherever the
+/// sensor is supposed to be, tells nothing, and what is in one place, more than what is in one plane. \param dimensions
+/// in which the surface tells where its points are: 1 for a plane, 2 for a line
+void SurfaceResiduals::weighEvidence(double squared, double variance, double dimensions, SurfaceSums& sums) const
+{
+  constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
+  if (weighs_evidence) {
+    const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(2.0 * M_PI * variance)));
+    sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
+  }
 }
 
 }  // namespace pcl_floam

@@ -50,7 +50,6 @@ struct SurfaceResiduals {
   Matrix6 reach = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
   double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
   bool weighs_evidence = false;     ///< else the sums have none
-  Eigen::Vector3d open = Eigen::Vector3d::Zero();  ///< \ref SurfaceProblem::open, in the target's axes
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
@@ -65,7 +64,8 @@ private:
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
   [[nodiscard]] double weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
-                              double told, SurfaceSums& sums) const;
+                              SurfaceSums& sums) const;
+  void weighEvidence(double squared, double variance, double dimensions, SurfaceSums& sums) const;
 };
 
 }  // namespace pcl_floam

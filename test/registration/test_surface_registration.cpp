@@ -26,6 +26,33 @@ double distance(const SE3& a, const SE3& b)
   return log(a.inverse() * b).norm();
 }
 
+/// The same piece of surface wherever one looks, so far off.
+class Everywhere : public SurfaceSearch {
+public:
+  [[nodiscard]] bool empty() const override { return false; }
+  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+            Surface* surfaces) const override
+  {
+    for (std::size_t i = 0; i < count; ++i) {
+      surfaces[i] = surface;
+      surfaces[i].center = places[i] + Eigen::Vector3d(off, 0.0, 0.0);
+    }
+  }
+
+  Surface surface;
+  double off = 0.0;
+};
+
+double evidenceIn(Everywhere& map, double off)
+{
+  map.off = off;
+  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  SurfaceProblem problem = problemOf(points, map);
+  problem.wants_evidence = true;
+  problem.locked = {true, true, true, true, true, true};
+  return registerSurfaces(problem).evidence;
+}
+
 }  // namespace
 
 TEST(MovingSensor, IsTheExponentialOfTheTwist)
@@ -168,27 +195,34 @@ TEST(SurfaceRegistration, EvidenceIsHighestAtTheTruth)
   EXPECT_GT(found, registerSurfaces(problem).evidence + 100.0);
 }
 
-/// A road that fits a little better elsewhere must not outvote the few points that tell of the way along it.
-TEST(SurfaceRegistration, WhatTellsOfTheOpenDirectionIsTheEvidence)
+/// Else a map that has been smeared by a false motion, with something near everywhere, would be as good as a clear one.
+TEST(SurfaceRegistration, WhatFillsItsCellIsNoEvidence)
 {
-  constexpr double kAlong = 0.5;
-  constexpr double kRough = 0.03;
-  std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
-  points.erase(
-      std::remove_if(points.begin(), points.end(), [](const ScanPoint& p) { return p.x < -3.9F && p.time > 0.1F; }),
-      points.end());  // few of the wall ahead are left
-  const Corner corner(3);
-  SurfaceProblem problem = problemOf(points, corner);
-  problem.wants_evidence = true;
-  problem.locked = {true, true, true, true, true, true};
-  const auto evidenceAt = [&](double x, double z, const Eigen::Vector3d& open) {
-    problem.prior.pose.translation = {x, 0.0, z};
-    problem.open = open;
-    return registerSurfaces(problem).evidence;
-  };
-  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitX();
-  EXPECT_LT(evidenceAt(0.0, kRough, Eigen::Vector3d::Zero()), evidenceAt(kAlong, 0.0, Eigen::Vector3d::Zero()));
-  EXPECT_GT(evidenceAt(0.0, kRough, ahead), evidenceAt(kAlong, 0.0, ahead));
+  Everywhere map;
+  map.surface.kind = SurfaceKind::point;
+  map.surface.felt.setZero();
+  EXPECT_NEAR(evidenceIn(map, 0.0), 0.0, 1e-9);
+  EXPECT_NEAR(evidenceIn(map, 0.1), 0.0, 1e-9);
+}
+
+/// A density in as many dimensions as the surface tells.
+TEST(SurfaceRegistration, WhatIsInOnePlaceTellsMoreThanWhatIsInOnePlane)
+{
+  Everywhere plane;
+  plane.surface.kind = SurfaceKind::plane;
+  plane.surface.direction = Eigen::Vector3d::UnitX();
+  plane.surface.extent = 1.0;
+  plane.surface.count = 100;
+  Everywhere line;
+  line.surface.kind = SurfaceKind::line;
+  line.surface.direction = Eigen::Vector3d::UnitZ();
+  Everywhere place;
+  place.surface.kind = SurfaceKind::point;
+  const double in_one_plane = evidenceIn(plane, 0.0);
+  EXPECT_GT(in_one_plane, 0.0);
+  EXPECT_NEAR(evidenceIn(line, 0.0) / in_one_plane, 2.0, 0.1);
+  EXPECT_NEAR(evidenceIn(place, 0.0) / in_one_plane, 3.0, 0.1);
+  EXPECT_LT(evidenceIn(place, 0.3), 0.0);  // and is less likely to be there if it is not
 }
 
 TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
