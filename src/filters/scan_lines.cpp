@@ -39,6 +39,7 @@ const char* toString(ScanLineFailure failure)
     case ScanLineFailure::no_line_structure: return "no scan-line structure was found";
     case ScanLineFailure::not_looked_for: return "scan lines were not looked for";
     case ScanLineFailure::too_few_lines: return "the scan lines are too few to bear each other out";
+    case ScanLineFailure::single_layer: return "the scan is a single layer";
   }
   return "unknown";
 }

@@ -17,6 +17,12 @@ namespace {
 /// tell apart.
 constexpr std::size_t kCurves = 64;
 
+/// In a single layer a curve is all that there is of what it hits, so each return testifies for itself.
+std::size_t curvesOf(const ScanReturns& returns)
+{
+  return returns.lines.failure == ScanLineFailure::single_layer ? returns.cloud.size : kCurves;
+}
+
 /// \return 1, or 0 if the point is out of range
 inline std::size_t take(const CloudView& cloud, const RangeLimits& squared, std::size_t i, std::size_t n,
                         ReturnBatch& batch)
@@ -76,9 +82,10 @@ void ReturnReader::readCloud(ReturnBatch& batch)
 {
   const std::size_t size = returns_.cloud.size;
   const std::size_t end = std::min(size, place_ + ReturnBatch::kMost);
+  const std::size_t curves = curvesOf(returns_);
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
-      batch.laser[batch.count] = static_cast<std::uint32_t>(kCurves * place_ / size);
+      batch.laser[batch.count] = static_cast<std::uint32_t>(curves * place_ / size);
       batch.place[batch.count] = -1;
       batch.count += take(returns_.cloud, limits_, place_, batch.count, batch);
     }

@@ -1,5 +1,6 @@
 #include "odometry/scan_preparation.h"
 
+#include "common/point_moments.h"
 #include "filters/scan_line_finders.h"
 
 #include <pcl_floam/filters/feature_extractor.h>
@@ -15,6 +16,18 @@ namespace {
 /// of the sweep are taken for lasers.
 constexpr std::size_t kFewestLines = 5;
 
+bool isSingleLayer(const CloudView& scan)
+{
+  constexpr double kThin = 1e-3;  // m: less than the noise of any wall
+  PointMoments moments;
+  for (std::size_t i = 0; i < scan.size; ++i) {
+    if (isMeasurable(scan, i)) {
+      moments.add({scan.x(i), scan.y(i), scan.z(i)});
+    }
+  }
+  return moments.count() > 0 && moments.axes().variance[0] < kThin * kThin;
+}
+
 }  // namespace
 
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
@@ -27,9 +40,10 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines_seen_ = std::max(lines_seen_, lines.seenLines());
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
-    if (lines.valid() && lines_seen_ < kFewestLines && may_do_without) {
+    if (lines_seen_ < kFewestLines && may_do_without) {
+      const ScanLineFailure failure = lines.valid() ? ScanLineFailure::too_few_lines : lines.failure;
       lines = ScanLines();
-      lines.failure = ScanLineFailure::too_few_lines;
+      lines.failure = isSingleLayer(scan) ? ScanLineFailure::single_layer : failure;
     }
   }
   const auto timingBy = [&](ScanTimingSource source) {

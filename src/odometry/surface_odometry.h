@@ -106,7 +106,18 @@ struct SurfaceOdometry : OdometryRun {
       report.reason = "the scan lines are too few to bear each other out: their own pattern may hold the pose";
       return TrackingState::doubtful;
     }
+    if (scan.lines.failure == ScanLineFailure::single_layer && !keepsLevel()) {
+      report.reason = "the scan is a single layer, which tells nothing of height, roll and pitch: these may be wrong";
+      return TrackingState::doubtful;
+    }
     return toldState();
+  }
+
+  [[nodiscard]] bool keepsLevel() const
+  {
+    const DegreesOfFreedom& locked = parameters.registration.locked;
+    return std::equal(locked.begin(), locked.end(), kPlanarMotion.begin(),
+                      [](bool is, bool asked) { return is || !asked; });
   }
 
   /// The first scan: its motion is found with the second.

@@ -365,6 +365,40 @@ TEST(Odometry, ALidarOfFourLayersIsNeverCalledTracked)
     }
   }
 }
+
+/// Of height, roll and pitch it tells nothing, whatever fits: it is tracked only where these are kept.
+TEST(Odometry, ALidarOfASingleLayerIsTrackedOnlyInThePlane)
+{
+  constexpr int kPastTheStart = 20;  // scans
+  Lidar layer;
+  layer.rings = 2;  // of which one is left out
+  layer.lowest = 0.0;
+  const auto levelPath = [](double k) {
+    return SE3(expSO3(Eigen::Vector3d(0.0, 0.0, 0.03 * k)), Eigen::Vector3d(0.04 * k, 0.01 * k, 0.0));
+  };
+  OdometryParameters planar = defaults();
+  planar.registration.locked = kPlanarMotion;
+  for (const bool is_planar : {false, true}) {
+    Odometry<pcl::PointXYZ> odometry(is_planar ? planar : defaults());
+    for (int k = 0; k < kPastTheStart; ++k) {
+      pcl::PointCloud<pcl::PointXYZ> cloud;
+      for (const PointXYZIRT& point : toCloud(sweepRoom(Room(), layer, [&](double) { return levelPath(k); }))) {
+        if (point.ring == 0) {
+          cloud.emplace_back(point.x, point.y, point.z);
+        }
+      }
+      const OdometryReport& report = odometry.track(cloud);
+      EXPECT_EQ(report.scan_line_failure, ScanLineFailure::single_layer);
+      if (is_planar) {
+        EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
+        EXPECT_LT((report.world_T_sensor.translation - levelPath(k).translation).norm(), 0.01) << "scan " << k;
+      } else {
+        EXPECT_NE(report.state, TrackingState::tracked) << "scan " << k;
+        EXPECT_TRUE(k == 0 || !report.reason.empty());
+      }
+    }
+  }
+}
 #endif
 
 TEST(Odometry, SettingsOutOfRangeAreRefused)

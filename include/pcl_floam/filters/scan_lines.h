@@ -38,7 +38,10 @@ enum class ScanLineFailure : std::uint8_t {
   not_looked_for,  ///< as ScanStructure::space wants it
   /// For one line to bear out what another one sees; of an odometry by surfaces, whose poses the lines' own pattern may
   /// hold then: they are doubtful.
-  too_few_lines
+  too_few_lines,
+  /// All points lie in one plane: of an odometry by surfaces, whose poses are doubtful then unless height, roll and
+  /// pitch are locked.
+  single_layer
 };
 
 [[nodiscard]] const char* toString(ScanStructure structure);
