@@ -26,13 +26,16 @@ class NdtMap : public pcl_floam::SurfaceMap {
   }
   pcl_floam::Surface surfaceAt(const Eigen::Vector3d& place, std::uint32_t laser) const
   {
-    const auto found = cells_.find(keyOf(place));
+    const auto found = place.allFinite() ? cells_.find(keyOf(place)) : cells_.end();
     if (found == cells_.end() || found->second.count < kFewest) {
       return {};
     }
     const Cell& cell = found->second;
     std::bitset<128> others = cell.lasers;  // what a laser draws, on whatever it hits, is no support for its own points
-    if (others.reset(laser % 128).count() < 2) {
+    if (laser != pcl_floam::kNoLaser) {
+      others.reset(laser % 128);
+    }
+    if (others.count() < 2) {
       return {};
     }
     const Eigen::Vector3d mean = cell.sum / cell.count;

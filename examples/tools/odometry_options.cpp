@@ -204,7 +204,8 @@ void addSolverOptions(CLI::App& app, RegistrationParameters& p)
              {"geman-mcclure", RobustKernel::geman_mcclure}},
             "robust kernel on the residuals");
   app.add_flag_callback(
-      "--planar", [&p] { p.locked = kPlanarMotion; }, "the sensor's height, roll and pitch stay as they begin");
+      "--planar", [&p] { p.locked = kPlanarMotion; },
+      "the sensor's height, roll and pitch stay as they begin;\na 2-D lidar needs it");
 }
 
 void addMapOptions(CLI::App& app, OdometryParameters& p)

@@ -56,6 +56,17 @@ Json sigma(const Matrix6& covariance)
   return {std::sqrt(covariance(0, 0)), std::sqrt(covariance(1, 1)), std::sqrt(covariance(2, 2))};
 }
 
+/// Rows, as in a trajectory's file.
+Json matrixOf(const SE3& pose)
+{
+  Json rows;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    const Eigen::RowVector4d values = pose.matrix().row(row);
+    rows.push_back({values[0], values[1], values[2], values[3]});
+  }
+  return rows;
+}
+
 /// Why a scan was worked from scan lines, or from space.
 std::string structureReason(const OdometryReport& scan)
 {
@@ -103,6 +114,7 @@ Json toJson(const RunSummary& summary)
     json["accuracy"]["vertical_correction_deg"] = summary.odometry.parameters().vertical_correction;
   }
   json["settings"] = toJson(summary.odometry.parameters());
+  json["sensor_pose"] = matrixOf(summary.odometry.sensorPose());
   return json;
 }
 

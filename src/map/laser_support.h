@@ -2,12 +2,11 @@
 /// Which lasers, in which keyframes, a cell's points came from.
 #pragma once
 
+#include <pcl_floam/map/surface.h>
+
 #include <cstdint>
 
 namespace pcl_floam {
-
-/// The laser of a point that is compared with all there is, its own laser's curves included.
-inline constexpr std::uint32_t kNoLaser = 0xFFFFFFFFU;
 
 /// A laser as a bit; those of sensors with more than 64 share them.
 inline std::uint64_t laserBit(std::uint32_t laser)

@@ -125,7 +125,7 @@ double FirstMotionSearch::same() const
 std::vector<Vector6> FirstMotionSearch::likelyMotions() const
 {
   constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 10.0;  // of thinned sweeps, whose points count as some 25 independent ones
+  constexpr double kHopeless = 20.0;  // of thinned sweeps, whose points count as some 25 independent ones
   std::vector<Found> best_first = found_;
   std::stable_sort(best_first.begin(), best_first.end(),
                    [](const Found& a, const Found& b) { return a.evidence > b.evidence; });

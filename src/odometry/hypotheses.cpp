@@ -13,7 +13,7 @@ namespace {
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostOfADirection = 4;
 
-/// Whether the first motions of two are one: then the likelier one is followed.
+/// Whether the first motions of two are one: then a single one is followed.
 bool haveBegunAlike(const Hypothesis& a, const Hypothesis& b)
 {
   constexpr double kSame = 0.5;  // m
@@ -111,17 +111,18 @@ void Hypotheses::giveUp(double behind, Rivals rivals)
 
 bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const
 {
+  constexpr double kBetter = 1.0;  // evidence: less does not tell two registrations of one motion apart
   const std::size_t now = late.evidences.size() - 1;
   std::ptrdiff_t better = 0;
   for (const Hypothesis& other : all_) {
     if (other.direction() != late.direction()) {
       continue;
     }
-    const bool is_better = other.evidences[now] > late.evidences[now];
-    if (isHopeless(late, other, now, kept) || (is_better && now == 1 && haveBegunAlike(late, other))) {
+    const bool is_as_good = late.evidences[now] < other.evidences[now] + kBetter;
+    if (isHopeless(late, other, now, kept) || (is_as_good && now == 1 && haveBegunAlike(late, other))) {
       return true;
     }
-    better += is_better ? 1 : 0;
+    better += other.evidences[now] > late.evidences[now] ? 1 : 0;
   }
   return better >= kMostOfADirection;
 }

@@ -16,16 +16,18 @@ namespace {
 /// of the sweep are taken for lasers.
 constexpr std::size_t kFewestLines = 5;
 
+/// Whether all points lie in one plane.
 bool isSingleLayer(const CloudView& scan)
 {
   constexpr double kThin = 1e-3;  // m: less than the noise of any wall
+  constexpr int kFewest = 4;      // three always do
   PointMoments moments;
   for (std::size_t i = 0; i < scan.size; ++i) {
     if (isMeasurable(scan, i)) {
       moments.add({scan.x(i), scan.y(i), scan.z(i)});
     }
   }
-  return moments.count() > 0 && moments.axes().variance[0] < kThin * kThin;
+  return moments.count() >= kFewest && moments.axes().variance[0] < kThin * kThin;
 }
 
 }  // namespace
@@ -40,11 +42,13 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines_seen_ = std::max(lines_seen_, lines.seenLines());
     const bool may_do_without =
         parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
-    if (lines_seen_ < kFewestLines && may_do_without) {
-      const ScanLineFailure failure = lines.valid() ? ScanLineFailure::too_few_lines : lines.failure;
+    if (lines.valid() && lines_seen_ < kFewestLines && may_do_without) {
       lines = ScanLines();
-      lines.failure = isSingleLayer(scan) ? ScanLineFailure::single_layer : failure;
+      lines.failure = ScanLineFailure::too_few_lines;
     }
+  }
+  if (!lines.valid() && lines_seen_ <= 1 && isSingleLayer(scan)) {
+    lines.failure = ScanLineFailure::single_layer;
   }
   const auto timingBy = [&](ScanTimingSource source) {
     return findScanTiming(scan, lines, source, parameters.threads);

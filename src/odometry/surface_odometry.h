@@ -107,7 +107,7 @@ struct SurfaceOdometry : OdometryRun {
       return TrackingState::doubtful;
     }
     if (scan.lines.failure == ScanLineFailure::single_layer && !keepsLevel()) {
-      report.reason = "the scan is a single layer, which tells nothing of height, roll and pitch: these may be wrong";
+      report.reason = "the scan is a single layer: height, roll and pitch may be wrong";
       return TrackingState::doubtful;
     }
     return toldState();

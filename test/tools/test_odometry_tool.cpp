@@ -7,6 +7,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
 
 namespace pcl_floam {
 namespace {
@@ -45,6 +48,34 @@ TEST_F(OdometryTool, FollowsTheDrive)
     EXPECT_GT(sigma.get<double>(), 0.0);
     EXPECT_LT(sigma.get<double>(), 0.1);
   }
+}
+
+/// A quarter turn to the left, and raised: where the sensor drives along its x, the vehicle drives along its y.
+TEST_F(OdometryTool, TakesScansInTheFrameOfAVehicle)
+{
+  for (std::size_t i = 0; i < kScans; ++i) {
+    std::string bin = contentOf(folder.path() / "scans" / (std::to_string(i) + ".bin"));
+    std::vector<float> values(bin.size() / sizeof(float));
+    std::memcpy(values.data(), bin.data(), bin.size());
+    for (std::size_t k = 0; k < values.size(); k += 4) {
+      const float x = values[k];
+      values[k] = 1.0F - values[k + 1];
+      values[k + 1] = x;
+      values[k + 2] += 1.5F;
+    }
+    std::memcpy(bin.data(), values.data(), bin.size());
+    folder.write("vehicle/" + std::to_string(i) + ".bin", bin);
+  }
+  const Outcome outcome = odometry("vehicle -o result --sensor-pose 1,0,1.5,0,0,90 --plot none");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(summary()["last_scan"]["structure"], "scan lines");
+  EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), 0.0, 0.05);
+  EXPECT_NEAR(poses().back().world_T_sensor.translation.y(), kStep * (kScans - 1), 0.05);
+  const nlohmann::json pose = summary()["sensor_pose"];
+  EXPECT_NEAR(pose[1][0].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(pose[2][3], 1.5);
+
+  EXPECT_NE(odometry("vehicle -o result --sensor-pose 1,0,1.5").status, 0);
 }
 
 TEST_F(OdometryTool, SaysInHowManyScansADirectionWasWeak)

@@ -39,8 +39,8 @@ enum class ScanLineFailure : std::uint8_t {
   /// For one line to bear out what another one sees; of an odometry by surfaces, whose poses the lines' own pattern may
   /// hold then: they are doubtful.
   too_few_lines,
-  /// All points lie in one plane: of an odometry by surfaces, whose poses are doubtful then unless height, roll and
-  /// pitch are locked.
+  /// All points lie in one plane, as those of a 2-D lidar do: of an odometry by surfaces, whose poses are doubtful then
+  /// unless height, roll and pitch are locked.
   single_layer
 };
 

@@ -19,7 +19,8 @@ struct ScanPoint {
   float y = 0.0F;
   float z = 0.0F;
   float time = 0.5F;        ///< fraction of the sweep, in [0,1]
-  std::uint32_t laser = 0;  ///< the scan line's number; without scan lines that of a part of the sweep
+  std::uint32_t laser = 0;  ///< the scan line's number; without scan lines that of a part of the sweep, or, of a single
+                            ///< layer, the return's own
   std::int32_t index = -1;  ///< of the point in its cloud
   std::int32_t place = -1;  ///< in the list of the scan lines (\ref ScanLines::index); -1: unknown
   /// m: along its scan line, as long as the line goes on straight about the point; zero: it does not, or it is not

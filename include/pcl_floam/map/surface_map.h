@@ -37,7 +37,7 @@ public:
   /// Takes in some points of the keyframe.
   /// \param places m, in the map's frame; undistorted
   /// \param lasers the scan line that saw each; without scan lines the part of the sweep, in the cloud's order; points
-  ///               of a map that was made before have a number each
+  ///               of a single layer, and of a map that was made before, have a number each
   virtual void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) = 0;
 
   /// Forgets what is farther than \p radius (m) from \p center; whole cells, or nothing if the map need not be small.

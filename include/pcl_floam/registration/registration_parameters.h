@@ -26,7 +26,7 @@ enum class SolverKind : std::uint8_t { gauss_newton, ceres };
 /// Degrees of freedom of a pose: translation along x, y, z, then rotation about x, y, z of the target's axes.
 using DegreesOfFreedom = std::array<bool, 6>;
 
-/// \ref RegistrationParameters::locked for a robot on level ground: height, roll and pitch.
+/// \ref RegistrationParameters::locked for a robot on level ground: height, roll and pitch. A 2-D lidar needs it.
 inline constexpr DegreesOfFreedom kPlanarMotion = {false, false, true, true, true, false};
 
 /// Settings of \ref EdgePlaneRegistration.
