@@ -66,7 +66,8 @@ public:
   /// \param rivals with which each is compared: motions within its direction of time
   void giveUp(double behind, Rivals rivals);
 
-  /// Whether a late one is hopelessly behind at the sweep that it took last, or is no other than one that is about as likely.
+  /// Whether a late one is hopelessly behind at the sweep that it took last, or is no other than one that is about as
+  /// likely.
   [[nodiscard]] bool haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const;
 
   /// Those that once were so behind one that has caught up.
