@@ -246,8 +246,7 @@ void SurfaceResiduals::weighEvidence(double squared, double variance, double dim
 {
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
   if (weighs_evidence) {
-    const double spread = std::min(1.0, 2.0 * M_PI * variance);  // no wider than the metre that it is compared with
-    const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(spread)));
+    const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(2.0 * M_PI * variance)));
     sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
   }
 }
