@@ -10,9 +10,8 @@ namespace pcl_floam {
 
 namespace {
 
-/// Fewer points have a shape by chance; edges are few, and chosen.
+/// Fewer points have a shape by chance.
 constexpr std::uint32_t kLeastCount = 6;
-constexpr std::uint32_t kLeastEdges = 4;
 /// A plane's thinnest variance is less than this part of the next, which is at least this part of the widest.
 constexpr double kFlat = 0.05;
 /// Points of one laser lie on its cone, of two on a plane if there is one; any two lasers' points make a line.
@@ -64,12 +63,11 @@ void CellSums::add(double x, double y, double z, std::uint32_t laser)
   ++count;
 }
 
-CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
+CellFit fitOf(const CellSums& sums, double side)
 {
   CellFit fit;
   const int lasers = __builtin_popcountll(sums.lasers);
-  const bool edges = shapes == SurfaceShapes::lines;
-  if (sums.count < (edges ? kLeastEdges : kLeastCount) || lasers < kLasersOfPlane) {
+  if (sums.count < kLeastCount || lasers < kLasersOfPlane) {
     return fit;
   }
   const Eigen::Vector3d mean = meanOf(sums);
@@ -83,8 +81,6 @@ CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side)
     shape.direction = single(eigen.eigenvectors().col(2));
     shape.thickness = static_cast<float>(variance[1]);
     shape.extent = static_cast<float>(variance[2]);
-  } else if (edges) {
-    fit.kind = SurfaceKind::unknown;
   } else if (variance[0] < kFlat * variance[1]) {
     fit.kind = SurfaceKind::plane;
     shape.direction = single(eigen.eigenvectors().col(0));

@@ -11,12 +11,6 @@
 
 namespace pcl_floam {
 
-/// Which shapes a map looks for.
-enum class SurfaceShapes : std::uint8_t {
-  all,
-  lines  ///< of edge features: all that they tell is where a line is
-};
-
 /// Count, sum and sum of outer products of points about a common origin, and the lasers that saw them.
 struct CellSums {
   std::array<double, 3> sum{};
@@ -45,6 +39,6 @@ struct CellFit {
 
 /// A shape that chance or the sampling pattern of a single laser would give is none.
 /// \param side m, of the cell
-[[nodiscard]] CellFit fitOf(const CellSums& sums, SurfaceShapes shapes, double side);
+[[nodiscard]] CellFit fitOf(const CellSums& sums, double side);
 
 }  // namespace pcl_floam

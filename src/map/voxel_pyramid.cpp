@@ -16,11 +16,10 @@ Eigen::Vector3d middleOf(const VoxelKey& key)
 
 }  // namespace
 
-VoxelPyramid::VoxelPyramid(double side, SurfaceShapes shapes)
+VoxelPyramid::VoxelPyramid(double side)
     : side_(side),
       inverse_side_(1.0 / side),
-      squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf)),
-      shapes_(shapes)
+      squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf))
 {
 }
 

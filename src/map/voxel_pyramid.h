@@ -23,7 +23,7 @@ public:
   static constexpr std::size_t kPointsPerLeaf = VoxelCells::kPointsPerLeaf;
 
   /// \param side m, of the finest cells
-  explicit VoxelPyramid(double side, SurfaceShapes shapes = SurfaceShapes::all);
+  explicit VoxelPyramid(double side);
 
   [[nodiscard]] double side() const { return side_; }
   [[nodiscard]] std::size_t size() const { return points_; }
@@ -31,7 +31,7 @@ public:
 
   [[nodiscard]] std::unique_ptr<SurfaceMap> makeEmpty(double side) const override
   {
-    return std::make_unique<VoxelPyramid>(side, shapes_);
+    return std::make_unique<VoxelPyramid>(side);
   }
   [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<VoxelPyramid>(*this); }
 
@@ -91,7 +91,6 @@ private:
   double side_;
   double inverse_side_;
   float squared_spacing_;
-  SurfaceShapes shapes_;
   std::uint32_t keyframe_ = 0;
   std::size_t points_ = 0;
   VoxelCells cells_;

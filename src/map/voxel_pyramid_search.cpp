@@ -61,7 +61,7 @@ VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
   if (state >= VoxelCells::kKnown) {
     return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, content.along};
   }
-  own = pcl_floam::fitOf(content.sums, shapes_, sideOf(found.level));
+  own = pcl_floam::fitOf(content.sums, sideOf(found.level));
   if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
     cell.shape = own.shape;
     content.along = own.along;
@@ -78,14 +78,13 @@ Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t lase
   return surface;
 }
 
-/// A line of edge features is seen by three lasers; that is support enough.
 void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
 {
   CellFit own;
   surface.kind = SurfaceKind::unknown;
   for (; found.cell != 0; found.cell = cells_[found.cell].parent, ++found.level) {
     const VoxelCells::Cell& cell = cells_[found.cell];
-    if (shapes_ != SurfaceShapes::lines && !cell.support.hasTwoBesides(laser, keyframe_)) {
+    if (!cell.support.hasTwoBesides(laser, keyframe_)) {
       continue;
     }
     const Fit fit = fitOf(found, own);

@@ -33,7 +33,8 @@ std::vector<Eigen::Vector3d> hardlyKnown(const Matrix6& information)
   return directions;
 }
 
-/// As many points as tell which motions are likely.
+/// As many points as tell which motions are likely. Of two scans' edges few are on lines, and those on cars that keep
+/// pace always are.
 Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
 {
   constexpr double kMapped = 0.6;      // sides of the map's finest cells, between points that enter it
@@ -41,7 +42,6 @@ Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
   Sweep thin;
   sampling.sample(sweep.dense, kMapped * side, thin.dense);
   sampling.sample(sweep.sample, kRegistered * side, thin.sample);
-  sampling.sample(sweep.edges, side, thin.edges);
   thin.periods = sweep.periods;
   thin.fraction = sweep.fraction;
   thin.is_direction_known = sweep.is_direction_known;

@@ -1,5 +1,6 @@
 #include "odometry/track_map.h"
 
+#include "map/voxel_pyramid.h"
 #include "registration/sweep_points.h"
 
 #include <algorithm>
@@ -14,12 +15,13 @@ namespace pcl_floam {
 
 namespace {
 
-void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
+/// \param insert takes some points' places and lasers
+template <typename Insert>
+void insertPlaced(const std::vector<ScanPoint>& points, const MovingSensor& sensor, const Insert& insert)
 {
   constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
   std::array<std::uint32_t, kTogether> lasers;
-  map.beginKeyframe();
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
     const std::size_t count = std::min(kTogether, points.size() - begin);
     sensor.undistorted(&points[begin], 1, count, places.data());
@@ -27,14 +29,13 @@ void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const Mov
       places[i] = sensor.pose() * places[i];
       lasers[i] = points[begin + i].laser;
     }
-    map.insert(places.data(), lasers.data(), count);
+    insert(places.data(), lasers.data(), count);
   }
 }
 
 }  // namespace
 
-TrackMap::TrackMap(const TrackSettings& settings)
-    : edges_(settings.side, SurfaceShapes::lines), horizon_(settings.horizon)
+TrackMap::TrackMap(const TrackSettings& settings) : horizon_(settings.horizon)
 {
   const SurfaceMap::ConstPtr& own = settings.components.map;
   space_ = own ? own->makeEmpty(settings.side) : std::make_unique<VoxelPyramid>(settings.side);
@@ -58,20 +59,25 @@ void TrackMap::clear()
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
-  insertInto(*space_, sweep.dense, sensor);
-  insertInto(edges_, sweep.edges, sensor);
+  space_->beginKeyframe();
+  insertPlaced(sweep.dense, sensor, [this](const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t n) {
+    space_->insert(places, lasers, n);
+  });
+  insertPlaced(sweep.edges, sensor,
+               [this](const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t n) {
+                 edges_.insert(places, n);
+               });
   space_->crop(pose.middle.translation, horizon_);
   edges_.crop(pose.middle.translation, horizon_);
 }
 
 void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges)
 {
-  std::vector<std::uint32_t> lasers(space.size() + edges.size());
+  std::vector<std::uint32_t> lasers(space.size());
   std::iota(lasers.begin(), lasers.end(), 0U);
   space_->beginKeyframe();
-  edges_.beginKeyframe();
   space_->insert(space.data(), lasers.data(), space.size());
-  edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
+  edges_.insert(edges.data(), edges.size());
   space_->beginKeyframe();  // what has numbers of its own is no laser's latest curve
 }
 

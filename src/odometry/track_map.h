@@ -2,7 +2,7 @@
 /// What a track registers with.
 #pragma once
 
-#include "map/voxel_pyramid.h"
+#include "map/edge_lines.h"
 #include "motion/sweep_pose.h"
 #include "odometry/sweep.h"
 #include "odometry/track_settings.h"
@@ -35,7 +35,7 @@ public:
 
 private:
   std::unique_ptr<SurfaceMap> space_;
-  VoxelPyramid edges_;
+  EdgeLines edges_;
   double horizon_;
 };
 

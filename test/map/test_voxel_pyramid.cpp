@@ -114,21 +114,6 @@ TEST(VoxelPyramid, WhatFillsItsCellEvenlyTellsNothingOfTheWayAlong)
   EXPECT_GT(edge.felt(1, 1) + edge.felt(2, 2), 3.0 * edge.felt(0, 0));
 }
 
-TEST(VoxelPyramid, OfEdgesOnlyLinesAreTaken)
-{
-  VoxelPyramid space(kSide);
-  VoxelPyramid edges(kSide, SurfaceShapes::lines);
-  for (VoxelPyramid* map : {&space, &edges}) {
-    addFloor(*map, {0.0, 0.0, 0.25}, 3.0, 0.12, 8);
-    for (std::uint32_t i = 0; i < 4; ++i) {
-      map->insert({10.25, 10.25, 10.01 + 0.12 * i}, i);
-    }
-  }
-  EXPECT_EQ(space.surfaceAt({0.3, 0.2, 0.25}, kStranger).kind, SurfaceKind::plane);
-  EXPECT_EQ(edges.surfaceAt({0.3, 0.2, 0.25}, kStranger).kind, SurfaceKind::unknown);
-  EXPECT_EQ(edges.surfaceAt({10.3, 10.25, 10.25}, kStranger).kind, SurfaceKind::line);
-}
-
 TEST(VoxelPyramid, LooksAtAWiderScaleWhereTheFinestShowsOneLaser)
 {
   VoxelPyramid map(kSide);

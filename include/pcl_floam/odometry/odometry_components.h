@@ -29,7 +29,8 @@ struct OdometryComponents {
   /// \param[out] registered empty
   std::function<void(const std::vector<ScanPoint>& points, std::vector<ScanPoint>& registered)> select_points;
 
-  /// In place of the pyramid of voxels (engine `surfaces`): \ref SurfaceMap::makeEmpty is asked for every map.
+  /// In place of the pyramid of voxels (engine `surfaces`; edges have a map of their own): \ref SurfaceMap::makeEmpty
+  /// is asked for every map.
   SurfaceMap::ConstPtr map;
 };
 
