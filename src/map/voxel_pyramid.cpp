@@ -17,9 +17,7 @@ Eigen::Vector3d middleOf(const VoxelKey& key)
 }  // namespace
 
 VoxelPyramid::VoxelPyramid(double side)
-    : side_(side),
-      inverse_side_(1.0 / side),
-      squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf))
+    : side_(side), inverse_side_(1.0 / side), squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf))
 {
 }
 
