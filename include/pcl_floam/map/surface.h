@@ -49,7 +49,7 @@ public:
   /// The surface at each of \p count places; `unknown` where there is none. Safe to call from several threads.
   /// \param places   world frame, m; one that is not finite has none
   /// \param lasers   the scan line that saw each (without scan lines a part of the sweep): what it drew itself is no
-  ///                 support for its points; \ref kNoLaser: everything is
+  ///                 support for its points; everything is for \ref kNoLaser
   /// \param surfaces room for \p count answers
   virtual void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
                     Surface* surfaces) const = 0;
