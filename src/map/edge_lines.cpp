@@ -1,6 +1,6 @@
 #include "map/edge_lines.h"
 
-#include "common/point_moments.h"
+#include "map/neighbor_moments.h"
 
 #include <algorithm>
 #include <array>
@@ -26,10 +26,7 @@ Surface lineThrough(const Neighbors& edges, const Eigen::Vector3d& place)
   if (edges.count < kEdges) {
     return line;
   }
-  PointMoments moments;
-  for (int i = 0; i < edges.count; ++i) {
-    moments.add(edges[i].offset.cast<double>());
-  }
+  const PointMoments moments = momentsOf(edges);
   const PrincipalAxes axes = moments.axes();
   const double across = std::max(0.0, axes.variance[1]);
   if (axes.variance[2] > std::max(kShortest * kShortest, kStraight * across)) {
@@ -48,8 +45,16 @@ Surface lineThrough(const Neighbors& edges, const Eigen::Vector3d& place)
 
 EdgeLines::EdgeLines() : layer_(std::make_unique<VoxelLayer>(kVoxel)) {}
 
-EdgeLines::EdgeLines(const EdgeLines& other) : SurfaceSearch(other), layer_(std::make_unique<VoxelLayer>(*other.layer_))
+EdgeLines::EdgeLines(const EdgeLines& other) : SurfaceMap(other), layer_(std::make_unique<VoxelLayer>(*other.layer_)) {}
+
+std::unique_ptr<SurfaceMap> EdgeLines::makeEmpty(double /*side*/) const
 {
+  return std::make_unique<EdgeLines>();
+}
+
+void EdgeLines::insert(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count)
+{
+  layer_->insertEach(places, count);
 }
 
 void EdgeLines::find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,

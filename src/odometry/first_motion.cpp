@@ -33,8 +33,8 @@ std::vector<Eigen::Vector3d> hardlyKnown(const Matrix6& information)
   return directions;
 }
 
-/// As many points as tell which motions are likely. Of two scans' edges few are on lines, and those on cars that keep
-/// pace always are.
+/// As many points as tell which motions are likely. No edges: on an open road those of cars that keep pace would be
+/// most of them, and speak for rest.
 Sweep thinned(const Sweep& sweep, double side, SpatialSampling& sampling)
 {
   constexpr double kMapped = 0.6;      // sides of the map's finest cells, between points that enter it

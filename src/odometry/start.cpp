@@ -94,6 +94,7 @@ bool Start::leavesNoTrace(const Hypotheses& hypotheses) const
 void Start::beginRevision(Hypotheses& hypotheses)
 {
   leaves_no_trace_ = leavesNoTrace(hypotheses);
+  is_guessed_ = hypotheses.hasRivalsInDirection() && !leaves_no_trace_;
   hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
   for (const Hypothesis& hypothesis : hypotheses.all()) {
     std::vector<SE3> first = middlesOf(hypothesis.poses);  // those found with a young map, and some that are trusted

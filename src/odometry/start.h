@@ -32,6 +32,8 @@ public:
   [[nodiscard]] bool isDecided() const { return !revisions_.empty(); }
   /// Whether others explain the sweeps about as well for longer than the first ones usually need to tell.
   [[nodiscard]] bool isUndecided(const Hypotheses& hypotheses) const;
+  /// Whether it had to be decided while others explained the sweeps about as well: time does not tell.
+  [[nodiscard]] bool isGuessed() const { return is_guessed_; }
   /// Whether the best hypothesis of each direction of time is left, its first sweeps where its last ones say they were.
   [[nodiscard]] bool isSettled() const { return is_settled_; }
 
@@ -55,6 +57,7 @@ private:
   std::vector<Revision> revisions_;  // once it is decided how the sensor moved
   std::vector<bool> keyframes_;      // those kept since then that the maps took in; in the end, of all
   bool leaves_no_trace_ = false;
+  bool is_guessed_ = false;
   bool is_settled_ = false;
 };
 

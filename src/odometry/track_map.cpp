@@ -15,13 +15,12 @@ namespace pcl_floam {
 
 namespace {
 
-/// \param insert takes some points' places and lasers
-template <typename Insert>
-void insertPlaced(const std::vector<ScanPoint>& points, const MovingSensor& sensor, const Insert& insert)
+void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
 {
   constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
   std::array<std::uint32_t, kTogether> lasers;
+  map.beginKeyframe();
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
     const std::size_t count = std::min(kTogether, points.size() - begin);
     sensor.undistorted(&points[begin], 1, count, places.data());
@@ -29,7 +28,7 @@ void insertPlaced(const std::vector<ScanPoint>& points, const MovingSensor& sens
       places[i] = sensor.pose() * places[i];
       lasers[i] = points[begin + i].laser;
     }
-    insert(places.data(), lasers.data(), count);
+    map.insert(places.data(), lasers.data(), count);
   }
 }
 
@@ -59,25 +58,20 @@ void TrackMap::clear()
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
-  space_->beginKeyframe();
-  insertPlaced(sweep.dense, sensor, [this](const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t n) {
-    space_->insert(places, lasers, n);
-  });
-  insertPlaced(sweep.edges, sensor,
-               [this](const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t n) {
-                 edges_.insert(places, n);
-               });
+  insertInto(*space_, sweep.dense, sensor);
+  insertInto(edges_, sweep.edges, sensor);
   space_->crop(pose.middle.translation, horizon_);
   edges_.crop(pose.middle.translation, horizon_);
 }
 
 void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges)
 {
-  std::vector<std::uint32_t> lasers(space.size());
+  std::vector<std::uint32_t> lasers(space.size() + edges.size());
   std::iota(lasers.begin(), lasers.end(), 0U);
   space_->beginKeyframe();
+  edges_.beginKeyframe();
   space_->insert(space.data(), lasers.data(), space.size());
-  edges_.insert(edges.data(), edges.size());
+  edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
   space_->beginKeyframe();  // what has numbers of its own is no laser's latest curve
 }
 

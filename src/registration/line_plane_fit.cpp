@@ -1,24 +1,11 @@
 #include "registration/line_plane_fit.h"
 
-#include "common/point_moments.h"
+#include "map/neighbor_moments.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
-
-namespace {
-
-PointMoments momentsOf(const Neighbors& neighbors)
-{
-  PointMoments moments;
-  for (int i = 0; i < neighbors.count; ++i) {
-    moments.add(neighbors[i].offset.cast<double>());
-  }
-  return moments;
-}
-
-}  // namespace
 
 std::optional<Factor> fitLine(const Neighbors& neighbors)
 {

@@ -29,10 +29,16 @@ std::vector<Eigen::Vector3d> post(const Eigen::Vector3d& foot, const Eigen::Vect
   return edges;
 }
 
+void insert(EdgeLines& map, const std::vector<Eigen::Vector3d>& edges)
+{
+  const std::vector<std::uint32_t> lasers(edges.size(), kNoLaser);
+  map.insert(edges.data(), lasers.data(), edges.size());
+}
+
 EdgeLines mapOf(const std::vector<Eigen::Vector3d>& edges)
 {
   EdgeLines map;
-  map.insert(edges.data(), edges.size());
+  insert(map, edges);
   return map;
 }
 
@@ -83,8 +89,7 @@ TEST(EdgeLines, EachOfManyPlacesHasItsOwnLine)
   std::vector<Eigen::Vector3d> places;
   for (std::size_t i = 0; i < kPosts; ++i) {
     places.emplace_back(5.0 * static_cast<double>(i), 0.0, 0.4);
-    const std::vector<Eigen::Vector3d> edges = post({places[i].x(), 0.1, 0.0}, Eigen::Vector3d::UnitZ(), 0.2);
-    map.insert(edges.data(), edges.size());
+    insert(map, post({places[i].x(), 0.1, 0.0}, Eigen::Vector3d::UnitZ(), 0.2));
   }
   places.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
   const std::vector<std::uint32_t> lasers(places.size(), 0);
@@ -107,6 +112,8 @@ TEST(EdgeLines, ACopyIsAMapOfItsOwn)
   EXPECT_EQ(lineAt(map, {0.0, 0.0, 0.5}).kind, SurfaceKind::line);
   other = map;
   EXPECT_EQ(lineAt(other, {0.0, 0.0, 0.5}).kind, SurfaceKind::line);
+  EXPECT_FALSE(map.copy()->empty());
+  EXPECT_TRUE(map.makeEmpty(1.0)->empty());
   other.clear();
   EXPECT_TRUE(other.empty());
 }

@@ -230,6 +230,29 @@ TEST(UndecidedStarts, AreDoubtfulUntilOneMotionIsLeft)
   EXPECT_LT(scans.wayError(), 2.0);
 }
 
+/// Of some one has to be chosen while others explain the scans about as well: it is not told by that, until somebody
+/// says where the sensor is.
+TEST(UndecidedStarts, AreNotSettledByTheClock)
+{
+  constexpr int kChosen = 47;  // scans
+  SimulationOptions options = optionsOf({258, 7.0, 0.0, "vlp16"});
+  options.realism = Realism::real;
+  Simulation simulation(options);
+  Odometry<PointXYZIRT> odometry;
+  int tracked = 0;
+  for (std::size_t number = 0; number < 64; ++number) {
+    const OdometryReport& report = odometry.track(simulation.sweep(number).cloud);
+    tracked += number >= kChosen && report.state == TrackingState::tracked ? 1 : 0;
+    EXPECT_TRUE(number + 1 != kChosen || saysSeveralExplain(report)) << "nothing is chosen here";
+  }
+  EXPECT_EQ(tracked, 0);
+  EXPECT_TRUE(saysSeveralExplain(odometry.report()));
+  odometry.setPose(odometry.pose());
+  for (std::size_t number = 64; number < 70; ++number) {
+    EXPECT_FALSE(saysSeveralExplain(odometry.track(simulation.sweep(number).cloud)));
+  }
+}
+
 /// The other one is lost: see the README's limits.
 class ScanMissingAtTheStart : public testing::TestWithParam<Start> {};
 
