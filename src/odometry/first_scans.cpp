@@ -1,5 +1,7 @@
 #include "odometry/first_scans.h"
 
+#include "odometry/start.h"
+
 #include <algorithm>
 
 namespace pcl_floam {
@@ -15,7 +17,9 @@ void FirstScans::begin(const FeatureSet& features)
 void FirstScans::add(const FeatureSet& features)
 {
   at_.push_back({++sweep_, 0.0});
-  features_.push_back(features);
+  if (features_.size() < Start::kMostKept) {
+    features_.push_back(features);
+  }
 }
 
 void FirstScans::miss()

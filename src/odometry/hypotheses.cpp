@@ -2,6 +2,8 @@
 
 #include "common/side_by_side.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,6 +20,28 @@ bool haveBegunAlike(const Hypothesis& a, const Hypothesis& b)
 {
   constexpr double kSame = 0.5;  // m
   return (a.poses[1].middle.translation - b.poses[1].middle.translation).norm() < kSame;
+}
+
+/// Of a track, where it was when that which evidence tells of began.
+const SE3& rememberedPose(const Hypothesis& hypothesis)
+{
+  return hypothesis.poses[hypothesis.poses.size() - 1 - kRememberedSweeps].middle;
+}
+
+/// Whether two have moved alike while they were judged: as far apart as two estimates of one motion are in the mean, or
+/// less. The sweeps that follow tell the same of both.
+bool haveMovedAlike(const Hypothesis& a, const Hypothesis& b)
+{
+  constexpr double kMean = 3.0;  // of the square of an error in space, in its standard deviations
+  if (std::min(a.poses.size(), b.poses.size()) <= kRememberedSweeps) {
+    return false;
+  }
+  const auto movedBy = [](const Hypothesis& h) -> Eigen::Vector3d {
+    return (rememberedPose(h).inverse() * h.poses.back().middle).translation / kRememberedSweeps;
+  };
+  const Eigen::Vector3d off = rememberedPose(a).rotation * (movedBy(a) - movedBy(b));
+  const Eigen::Matrix3d expected = (a.track.motion().covariance() + b.track.motion().covariance()).block<3, 3>(6, 6);
+  return off.dot(expected.ldlt().solve(off)) < kMean;
 }
 
 /// Whether one was too far behind another when they took a sweep.
@@ -102,7 +126,11 @@ void Hypotheses::giveUp(double behind, Rivals rivals)
     const auto here = all_.begin() + static_cast<std::ptrdiff_t>(i);
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == here->direction(); };
     const auto best = rivals == Rivals::motions ? std::find_if(all_.begin(), here, isOfSameDirection) : all_.begin();
+    const auto isLikelierTwin = [&](const Hypothesis& other) {
+      return rivals == Rivals::motions && isOfSameDirection(other) && haveMovedAlike(other, *here);
+    };
     if (here->is_lost || here->evidence() < best->evidence() - behind ||
+        std::any_of(all_.begin(), here, isLikelierTwin) ||
         std::count_if(all_.begin(), here, isOfSameDirection) >= kMostOfADirection) {
       all_.erase(here);
     }

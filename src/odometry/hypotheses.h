@@ -61,8 +61,8 @@ public:
   /// Whether all maps took in the last sweep.
   [[nodiscard]] bool tookIn() const { return took_in_; }
 
-  /// Those that match no more, or have fallen behind the best one by so much evidence, and all but a few of each
-  /// direction of time.
+  /// Those that match no more, or have fallen behind the best one by so much evidence, or have come to move as a
+  /// likelier one does, and all but a few of each direction of time.
   /// \param rivals with which each is compared: motions within its direction of time
   void giveUp(double behind, Rivals rivals);
 

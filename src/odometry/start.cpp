@@ -9,11 +9,10 @@ namespace pcl_floam {
 
 namespace {
 
-/// Sweeps until it is decided how it began: if one motion is left by then, and at most.
+/// Sweeps until it is decided how it began, if one motion is left by then.
 constexpr std::size_t kFirstSweeps = 12;
-constexpr std::size_t kMostFirstSweeps = 4 * kFirstSweeps;
-/// Sweeps until which motions are tried that have not been yet.
-constexpr std::size_t kMostTriedSweeps = 2 * kMostFirstSweeps;
+/// First sweeps that are found once more, and what these are found from.
+constexpr std::size_t kRevised = kFirstSweeps + BackwardPass::kTrusted;
 
 std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 {
@@ -27,6 +26,7 @@ std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
 SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& settings, Hypotheses& hypotheses)
 {
   kept_.push_back(second);
+  was_hinted_ = kept_.front().hint.has_value() || second.hint.has_value();
   candidates_.emplace(kept_, settings);
   SurfaceRegistration found = candidates_->followFirst(kept_, hypotheses);
   if (hypotheses.empty()) {
@@ -45,7 +45,10 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   if (!hypotheses.step(sweep, isDecided() ? Rivals::directions : Rivals::motions, true)) {
     return false;
   }
-  kept_.push_back(sweep);
+  if (keeps_) {
+    kept_.push_back(sweep);
+  }
+  was_hinted_ = was_hinted_ || sweep.hint.has_value();
   if (isDecided()) {
     revise(hypotheses);
   } else {
@@ -54,51 +57,53 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   return true;
 }
 
+/// After many sweeps rivals are still followed, but motions that have not been tried by then are not.
 void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 {
   hypotheses.giveUp(hopeless(sweep), Rivals::motions);
-  if (kept_.size() < kMostTriedSweeps) {
-    candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
-  } else {
+  if (kept_.size() == kMostKept) {
     candidates_.reset();
+  } else if (candidates_) {
+    candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
   }
   if (leavesNoTrace(hypotheses)) {
     hypotheses.putFirst(Preference::least_motion);
   }
   if (canBeDecided(hypotheses)) {
     beginRevision(hypotheses);
+  } else if (kept_.size() == kMostKept) {
+    keeps_ = false;
+    kept_.resize(kRevised);
   }
 }
 
 bool Start::isUndecided(const Hypotheses& hypotheses) const
 {
   const bool has_rivals = hypotheses.hasRivalsInDirection() || (candidates_ && candidates_->areWaiting());
-  return has_rivals && kept_.size() >= kFirstSweeps && !isDecided();
+  return has_rivals && hypotheses.front().poses.size() >= kFirstSweeps && !isDecided();
 }
 
 bool Start::canBeDecided(const Hypotheses& hypotheses) const
 {
   const bool more_would_tell = hypotheses.hasRivalsInDirection() && !leavesNoTrace(hypotheses);
-  return !isSearching() && kept_.size() >= (more_would_tell ? kMostFirstSweeps : kFirstSweeps);
+  return !isSearching() && !more_would_tell && hypotheses.front().poses.size() >= kFirstSweeps;
 }
 
 /// Whether most of the first sweeps do not tell of a direction, and nobody else did.
 bool Start::leavesNoTrace(const Hypotheses& hypotheses) const
 {
-  const bool is_told =
-      std::any_of(kept_.begin(), kept_.end(), [](const Sweep& sweep) { return sweep.hint.has_value(); });
-  return 2 * hypotheses.front().without_trace > kept_.size() && !is_told;
+  const Hypothesis& best = hypotheses.front();
+  return 2 * best.without_trace > best.poses.size() && !was_hinted_;
 }
 
 /// The best hypothesis of each direction of time stays. Where a motion leaves no trace, the least is as good as any.
 void Start::beginRevision(Hypotheses& hypotheses)
 {
   leaves_no_trace_ = leavesNoTrace(hypotheses);
-  is_guessed_ = hypotheses.hasRivalsInDirection() && !leaves_no_trace_;
   hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
   for (const Hypothesis& hypothesis : hypotheses.all()) {
     std::vector<SE3> first = middlesOf(hypothesis.poses);  // those found with a young map, and some that are trusted
-    first.resize(std::min(first.size(), kFirstSweeps + BackwardPass::kTrusted));
+    first.resize(std::min(first.size(), kRevised));
     revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
   }
 }
@@ -147,7 +152,7 @@ void Start::settle(Hypotheses& hypotheses)
     const auto revision = revisionOf(*next);
     makeAgain(*next, revision->pass);
     if (leaves_no_trace_) {
-      next->track.forgetAlong(next->last.report.weak_directions, static_cast<double>(kept_.size()));
+      next->track.forgetAlong(next->last.report.weak_directions, static_cast<double>(next->poses.size()));
     }
     revision->is_done = true;
   }
@@ -158,7 +163,7 @@ void Start::settle(Hypotheses& hypotheses)
 }
 
 /// Its map, with poses that are known better. If they are not, it stays as it is, unless there were several hypotheses:
-/// their maps must not differ in what they took in.
+/// their maps must not differ in what they took in. It does, too, if that was too much to be kept.
 void Start::makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const
 {
   const std::vector<SweepPose> revised = pass.poses(hypothesis.poses);
@@ -167,7 +172,9 @@ void Start::makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const
   } else if (revisions_.size() == 1) {
     return;
   }
-  hypothesis.track.makeMap(kept_, hypothesis.poses, keyframes_);
+  if (keeps_) {
+    hypothesis.track.makeMap(kept_, hypothesis.poses, keyframes_);
+  }
 }
 
 }  // namespace pcl_floam

@@ -11,11 +11,14 @@
 
 namespace pcl_floam {
 
-/// The first two sweeps hardly tell how the sensor moved on an open road. So several motions are followed for the first
-/// sweeps, each by a track of its own, and the one that explains them best stays. What is more than a sweep's share of
-/// that (\ref TrackSettings::start_effort) is left to the sweeps that follow.
+/// The first two sweeps hardly tell how the sensor moved on an open road. So several motions are followed, each by a
+/// track of its own, until the others have fallen behind the one that explains the sweeps best, or move as it does.
+/// What is more than a sweep's share of that (\ref TrackSettings::start_effort) is left to the sweeps that follow.
 class Start {
 public:
+  /// First sweeps that are kept.
+  static constexpr std::size_t kMostKept = 96;
+
   explicit Start(const Sweep& first) : kept_{first} {}
 
   /// Looks for a motion from the first sweep to the second, and keeps that if there is one.
@@ -32,8 +35,6 @@ public:
   [[nodiscard]] bool isDecided() const { return !revisions_.empty(); }
   /// Whether others explain the sweeps about as well for longer than the first ones usually need to tell.
   [[nodiscard]] bool isUndecided(const Hypotheses& hypotheses) const;
-  /// Whether it had to be decided while others explained the sweeps about as well: time does not tell.
-  [[nodiscard]] bool isGuessed() const { return is_guessed_; }
   /// Whether the best hypothesis of each direction of time is left, its first sweeps where its last ones say they were.
   [[nodiscard]] bool isSettled() const { return is_settled_; }
 
@@ -52,12 +53,13 @@ private:
   void settle(Hypotheses& hypotheses);
   void makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const;
 
-  std::vector<Sweep> kept_;
+  std::vector<Sweep> kept_;  // from the first one on
+  bool keeps_ = true;        // all of them
   std::optional<CandidateMotions> candidates_;
   std::vector<Revision> revisions_;  // once it is decided how the sensor moved
   std::vector<bool> keyframes_;      // those kept since then that the maps took in; in the end, of all
   bool leaves_no_trace_ = false;
-  bool is_guessed_ = false;
+  bool was_hinted_ = false;
   bool is_settled_ = false;
 };
 

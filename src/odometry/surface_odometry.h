@@ -209,7 +209,8 @@ struct SurfaceOdometry : OdometryRun {
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
     }
     map_building.clear();
-    for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    const std::size_t kept = std::min(first_scans.features().size(), poses.size() - 1);
+    for (std::size_t i = 0; i < kept; ++i) {
       map_building.add(first_scans.features()[i], world_T_track * poses[i], parameters);
     }
   }

@@ -276,7 +276,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
 /// will.
 void Track::judge(const SurfaceRegistration& registration)
 {
-  constexpr double kKept = 0.8;  // of the evidence, from sweep to sweep
+  constexpr double kKept = 1.0 - 1.0 / kRememberedSweeps;  // of the evidence, from sweep to sweep
   const SE3& found = registration.report.target_T_source;
   Eigen::Matrix<double, 6, 1> off;
   off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());

@@ -11,11 +11,15 @@
 #include "odometry/track_settings.h"
 #include "registration/surface_residuals.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace pcl_floam {
+
+/// Of which evidence tells: what was before has faded.
+constexpr std::size_t kRememberedSweeps = 5;
 
 /// In what other tracks differ from one.
 enum class Rivals : std::uint8_t { none, directions /*of time*/, motions };

@@ -42,7 +42,6 @@ void Tracker::keepBest()
 
 void Tracker::place(const SE3& pose)
 {
-  is_guessed_ = false;
   if (prior_map_) {
     prior_map_->guess = pose;
   }
@@ -160,7 +159,6 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
   if (!start_) {
     hypotheses_.giveUp(kWrongDirection, Rivals::directions);
   }
-  is_guessed_ = start_ ? start_->isGuessed() : is_guessed_;
   outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = may_correct_ && outcome.changed_track;
   if (start_ && start_->isSettled()) {

@@ -46,9 +46,8 @@ public:
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
   /// Whether it is not decided yet how the sensor began to move.
   [[nodiscard]] bool isOpen() const { return start_ && isTracking() && !start_->isDecided(); }
-  /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well. It
-  /// stays so if the best one had to be chosen then, until somebody places the sensor.
-  [[nodiscard]] bool isUndecided() const { return is_guessed_ || (isOpen() && start_->isUndecided(hypotheses_)); }
+  /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well.
+  [[nodiscard]] bool isUndecided() const { return isOpen() && start_->isUndecided(hypotheses_); }
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
   /// Whether they may by much: several motions are or were followed, or are sought.
@@ -82,7 +81,6 @@ private:
   int failed_ = 0;              // sweeps in a row that did not fit the first ones
   Hypotheses hypotheses_;
   bool may_correct_ = false;
-  bool is_guessed_ = false;         // how the sensor began to move
   std::size_t most_corrected_ = 0;  // sweeps, after which no pose is
 };
 
