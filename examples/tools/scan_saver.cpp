@@ -86,7 +86,9 @@ void ScanSaver::save(std::size_t scan, double time, pcl::PCLPointCloud2& cloud, 
   times_.push_back(time);
   correct(scan, report);
   waiting_.push_back({scan, cloud, report, parameters});
-  if (!report.provisional && report.state != TrackingState::initialized) {
+  constexpr std::size_t kMostWaiting = 200;  // a start may take long to be told
+  const bool is_known = !report.provisional && report.state != TrackingState::initialized;
+  if (is_known || waiting_.size() == kMostWaiting) {
     writeWaiting();
   }
 }

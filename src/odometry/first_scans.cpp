@@ -17,8 +17,9 @@ void FirstScans::begin(const FeatureSet& features)
 void FirstScans::add(const FeatureSet& features)
 {
   at_.push_back({++sweep_, 0.0});
-  if (features_.size() < Start::kMostKept) {
-    features_.push_back(features);
+  features_.push_back(features);
+  if (features_.size() > Start::kMostKept) {
+    features_.erase(features_.begin());
   }
 }
 

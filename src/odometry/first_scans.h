@@ -31,7 +31,7 @@ public:
   std::vector<SE3> correct(const std::vector<SweepPose>& poses, const SE3& world_T_track, double instant);
   /// Whether that was much.
   [[nodiscard]] bool jumped() const { return jumped_; }
-  /// Of the scans that were registered, as many as are kept.
+  /// Of the last scans that were registered.
   [[nodiscard]] const std::vector<FeatureSet>& features() const { return features_; }
 
 private:

@@ -28,12 +28,13 @@ const SE3& rememberedPose(const Hypothesis& hypothesis)
   return hypothesis.poses[hypothesis.poses.size() - 1 - kRememberedSweeps].middle;
 }
 
-/// Whether two have moved alike while they were judged: as far apart as two estimates of one motion are in the mean, or
-/// less. The sweeps that follow tell the same of both.
+/// Whether two have moved alike while they were judged, as far as sweeps tell: as far apart as two estimates of one
+/// motion are in the mean, or less. What follows tells the same of both.
 bool haveMovedAlike(const Hypothesis& a, const Hypothesis& b)
 {
   constexpr double kMean = 3.0;  // of the square of an error in space, in its standard deviations
-  if (std::min(a.poses.size(), b.poses.size()) <= kRememberedSweeps) {
+  const bool is_told = a.last.report.weak_directions.empty() && b.last.report.weak_directions.empty();
+  if (!is_told || std::min(a.poses.size(), b.poses.size()) <= kRememberedSweeps) {
     return false;
   }
   const auto movedBy = [](const Hypothesis& h) -> Eigen::Vector3d {
@@ -77,7 +78,7 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
     evidences.push_back(track.evidence());
   }
   if (rivals == Rivals::motions) {
-    without_trace += last.report.weak_directions.empty() ? 0 : 1;
+    without_trace += last.report.weak_directions.empty() || poses.size() > kFirstSweeps ? 0 : 1;
     track.updateMap(sweep);
   }
 }
@@ -122,19 +123,22 @@ void Hypotheses::updateMaps(const Sweep& sweep)
 void Hypotheses::giveUp(double behind, Rivals rivals)
 {
   putFirst(Preference::likeliest);
-  for (std::size_t i = all_.size(); i-- > 1;) {
-    const auto here = all_.begin() + static_cast<std::ptrdiff_t>(i);
-    const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == here->direction(); };
-    const auto best = rivals == Rivals::motions ? std::find_if(all_.begin(), here, isOfSameDirection) : all_.begin();
-    const auto isLikelierTwin = [&](const Hypothesis& other) {
-      return rivals == Rivals::motions && isOfSameDirection(other) && haveMovedAlike(other, *here);
+  std::vector<Hypothesis> left;
+  for (Hypothesis& next : all_) {
+    const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == next.direction(); };
+    const auto isTwin = [&](const Hypothesis& other) {
+      return rivals == Rivals::motions && isOfSameDirection(other) && haveMovedAlike(other, next);
     };
-    if (here->is_lost || here->evidence() < best->evidence() - behind ||
-        std::any_of(all_.begin(), here, isLikelierTwin) ||
-        std::count_if(all_.begin(), here, isOfSameDirection) >= kMostOfADirection) {
-      all_.erase(here);
+    const auto best =
+        rivals == Rivals::motions ? std::find_if(left.begin(), left.end(), isOfSameDirection) : left.begin();
+    const bool is_best = left.empty() || (best == left.end() && !next.is_lost);
+    if (is_best || (!next.is_lost && next.evidence() >= best->evidence() - behind &&
+                    std::none_of(left.begin(), left.end(), isTwin) &&
+                    std::count_if(left.begin(), left.end(), isOfSameDirection) < kMostOfADirection)) {
+      left.push_back(std::move(next));
     }
   }
+  all_ = std::move(left);
 }
 
 bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const

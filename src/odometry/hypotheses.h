@@ -11,6 +11,9 @@
 
 namespace pcl_floam {
 
+/// Sweeps until it is decided how the sensor began to move, if one motion is left by then.
+constexpr std::size_t kFirstSweeps = 12;
+
 /// A track among others.
 struct Hypothesis {
   Hypothesis(Track begun, const SurfaceRegistration& found) : track(std::move(begun)), last(found) {}

@@ -9,8 +9,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// Sweeps until it is decided how it began, if one motion is left by then.
-constexpr std::size_t kFirstSweeps = 12;
 /// First sweeps that are found once more, and what these are found from.
 constexpr std::size_t kRevised = kFirstSweeps + BackwardPass::kTrusted;
 
@@ -93,7 +91,7 @@ bool Start::canBeDecided(const Hypotheses& hypotheses) const
 bool Start::leavesNoTrace(const Hypotheses& hypotheses) const
 {
   const Hypothesis& best = hypotheses.front();
-  return 2 * best.without_trace > best.poses.size() && !was_hinted_;
+  return 2 * best.without_trace > std::min(best.poses.size(), kFirstSweeps) && !was_hinted_;
 }
 
 /// The best hypothesis of each direction of time stays. Where a motion leaves no trace, the least is as good as any.

@@ -8,9 +8,11 @@
 #include "odometry/tracker.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -209,9 +211,10 @@ struct SurfaceOdometry : OdometryRun {
       report.reason = "poses since the first scan have turned out to be wrong and are corrected: this one jumps";
     }
     map_building.clear();
-    const std::size_t kept = std::min(first_scans.features().size(), poses.size() - 1);
-    for (std::size_t i = 0; i < kept; ++i) {
-      map_building.add(first_scans.features()[i], world_T_track * poses[i], parameters);
+    const std::vector<FeatureSet>& features = first_scans.features();
+    const std::size_t before = poses.size() - features.size();
+    for (std::size_t i = 0; i + 1 < features.size(); ++i) {
+      map_building.add(features[i], world_T_track * poses[before + i], parameters);
     }
   }
 

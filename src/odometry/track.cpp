@@ -46,6 +46,13 @@ double squaredError(const SE3& motion, const MotionHint& hint)
   return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
 }
 
+/// Whether the sensor may be anywhere by now.
+bool isLong(const Sweep& sweep)
+{
+  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
+  return sweep.periods > kLong;
+}
+
 /// What fits no better than points anywhere would is no pose.
 SurfaceRegistration unlessByChance(SurfaceRegistration found)
 {
@@ -187,7 +194,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
     problem.reach *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);
-  if (rivals != Rivals::motions && found.explained() < kBorneOut && seek(sweep, found)) {
+  if ((rivals != Rivals::motions || isLong(sweep)) && found.explained() < kBorneOut && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
     again.wants_evidence = problem.wants_evidence;
     found = registerSurfaces(again);
@@ -212,9 +219,8 @@ void Track::predict(const Sweep& sweep)
 /// \return whether it is elsewhere
 bool Track::seek(const Sweep& sweep, const SurfaceRegistration& found)
 {
-  constexpr double kLong = 3.5;  // periods: a car's motion is known for longer, a hand's is not
   constexpr Doubt kAround = {1.0, 0.4};
-  const bool is_anywhere = sweep.periods > kLong;
+  const bool is_anywhere = isLong(sweep);
   if (!is_anywhere && found.explained() < kByChance) {
     return false;
   }

@@ -147,13 +147,8 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
   const std::size_t before = hypotheses_.front().number;
   const bool goes_on =
       start_ ? start_->step(sweep, hypotheses_) : hypotheses_.step(sweep, Rivals::directions, may_correct_);
-  failed_ = goes_on ? 0 : failed_ + 1;
   if (!goes_on) {
     outcome.registration = hypotheses_.front().last;
-    if (start_ && failed_ == kMostFailures) {
-      start_.reset();  // a single track is sought again elsewhere
-      may_correct_ = false;
-    }
     return outcome;
   }
   if (!start_) {
