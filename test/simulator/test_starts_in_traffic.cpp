@@ -266,6 +266,47 @@ TEST(UndecidedStarts, AreSettledByAPoseThatIsGiven)
   EXPECT_FALSE(saysSeveralExplain(odometry.track(simulation.sweep(20).cloud)));
 }
 
+/// Nothing tells two apart that have come to move alike, and nothing is to be told.
+TEST(UndecidedStarts, EndWhereRivalsMoveAlike)
+{
+  SimulationOptions options;
+  options.world = "open-road";
+  options.sensor = "vlp16";
+  options.seed = 201;
+  FirstScans scans(options);
+  int undecided = 0;
+  OdometryReport report;
+  for (int number = 0; number < 40; ++number) {
+    report = scans.next();
+    undecided += saysSeveralExplain(report) ? 1 : 0;
+  }
+  EXPECT_GT(undecided, 0) << "no rivals here";
+  EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
+  EXPECT_LT(scans.greatestWayError(40), 0.1);
+}
+
+/// Scans in which nothing is where it was fit none of the rivals; these are followed where it goes on.
+TEST(UndecidedStarts, OutliveScansThatDoNotFit)
+{
+  Simulation simulation(slowlyTold());
+  Odometry<PointXYZIRT> odometry;
+  constexpr float kAway = 60.0F;  // m, up
+  int unfit = 0;
+  for (std::size_t number = 0; number < 40; ++number) {
+    Sweep sweep = simulation.sweep(number);
+    if (number >= 20 && number < 28) {
+      for (PointXYZIRT& point : sweep.cloud) {
+        point.z += kAway;
+      }
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud);
+    unfit += report.state == TrackingState::predicted ? 1 : 0;
+    EXPECT_TRUE(number < 20 || report.state != TrackingState::tracked) << number;
+  }
+  EXPECT_GE(unfit, 6);
+  EXPECT_TRUE(saysSeveralExplain(odometry.report())) << odometry.report().reason;
+}
+
 /// The other one is lost: see the README's limits.
 class ScanMissingAtTheStart : public testing::TestWithParam<Start> {};
 
