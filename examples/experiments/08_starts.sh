@@ -21,10 +21,10 @@ def motions(rows):
 
 def judge(run):
     if not (run.folder / "poses.kitti.txt").exists():
-        return {"lost": True}
+        return {"lost": True, "silent": False}
     estimate, truth = (motions(positions(file)[0]) for file in (run.folder / "poses.kitti.txt", run.data.truth))
     if len(estimate) != len(truth):
-        return {"lost": True}
+        return {"lost": True, "silent": False}
     off = statistics.median(math.dist(e, t) for e, t in zip(estimate[-5:], truth[-5:]))
     last = list(csv.DictReader((run.folder / "scans.csv").read_text().splitlines()))[-1]
     is_good = call(last["state"], last["provisional"] == "1") == "good"

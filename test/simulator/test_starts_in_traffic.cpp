@@ -230,9 +230,11 @@ TEST(UndecidedStarts, AreDoubtfulUntilOneMotionIsLeft)
   EXPECT_LT(scans.wayError(), 2.0);
 }
 
+/// Of a family on which nothing was chosen.
 SimulationOptions slowlyTold()
 {
-  SimulationOptions options = optionsOf({258, 7.0, 0.0, "vlp16"});
+  SimulationOptions options = optionsOf({6, 0.0, 0.0, "vlp16"});
+  options.family = Family::test;
   options.realism = Realism::real;
   return options;
 }
@@ -240,7 +242,7 @@ SimulationOptions slowlyTold()
 /// However long it takes, rivals are followed until one is left, and the poses before are corrected.
 TEST(UndecidedStarts, AreNotSettledByTheClock)
 {
-  constexpr int kLong = 150;  // scans
+  constexpr int kLong = 175;  // scans
   FirstScans scans(slowlyTold());
   int undecided = 0;
   OdometryReport report;
@@ -254,6 +256,7 @@ TEST(UndecidedStarts, AreNotSettledByTheClock)
   EXPECT_LT(scans.greatestWayError(kFirst), 1.0);
 }
 
+/// The likeliest stays then.
 TEST(UndecidedStarts, AreSettledByAPoseThatIsGiven)
 {
   Simulation simulation(slowlyTold());
@@ -272,17 +275,18 @@ TEST(UndecidedStarts, EndWhereRivalsMoveAlike)
   SimulationOptions options;
   options.world = "open-road";
   options.sensor = "vlp16";
-  options.seed = 201;
+  options.seed = 5;
+  options.family = Family::test;
   FirstScans scans(options);
   int undecided = 0;
   OdometryReport report;
-  for (int number = 0; number < 40; ++number) {
+  for (int number = 0; number < 50; ++number) {
     report = scans.next();
     undecided += saysSeveralExplain(report) ? 1 : 0;
   }
   EXPECT_GT(undecided, 0) << "no rivals here";
   EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
-  EXPECT_LT(scans.greatestWayError(40), 0.1);
+  EXPECT_LT(scans.greatestWayError(50), 0.1);
 }
 
 /// Scans in which nothing is where it was fit none of the rivals; these are followed where it goes on.
