@@ -122,11 +122,18 @@ void SpatialSampling::sample(const ScanReturns& returns, double side, std::vecto
 
 void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample)
 {
+  this->sample(points, side, points.size(), sample);
+}
+
+/// \param enough points, after which it need not go on
+void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::size_t enough,
+                             std::vector<ScanPoint>& sample)
+{
   sample.clear();
   forget();
   std::array<float, ReturnBatch::kMost> x, y, z;
   std::array<std::uint64_t, ReturnBatch::kMost> cubes;
-  for (std::size_t begin = 0; begin < points.size(); begin += ReturnBatch::kMost) {
+  for (std::size_t begin = 0; begin < points.size() && sample.size() < enough; begin += ReturnBatch::kMost) {
     const std::size_t count = std::min(ReturnBatch::kMost, points.size() - begin);
     for (std::size_t n = 0; n < count; ++n) {
       x[n] = points[begin + n].x;
@@ -155,7 +162,7 @@ double SpatialSampling::sideFor(const std::vector<ScanPoint>& points, std::size_
   std::vector<ScanPoint> taken;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (small + great);
-    sample(points, std::exp(middle), taken);
+    sample(points, std::exp(middle), cells + 1, taken);
     (taken.size() > cells ? small : great) = middle;
   }
   return std::exp(great);

@@ -95,7 +95,7 @@ private:
 
   TrackSettings settings_;
   std::optional<TrackMap> map_;
-  mutable std::vector<SurfaceSums> room_;
+  mutable SurfaceRoom room_;
   bool keeps_map_ = true;
   int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   bool is_keyframe_ = false;

@@ -22,8 +22,8 @@ constexpr int kLeastFirst = 2;
 constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
-/// A step that ends the iterations, in standard deviations of the pose.
-constexpr double kSmallStep = 0.3;
+/// A step that ends the iterations, in standard deviations of the pose: what it leaves is a part of it.
+constexpr double kSmallStep = 0.6;
 
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
@@ -40,8 +40,9 @@ public:
         velocity_(problem.prior.velocity),
         prior_(problem.prior.information()),
         doubt_(problem.reach.topLeftCorner<3, 3>().trace()),
-        parts_(problem.room != nullptr ? *problem.room : own_parts_)
+        room_(problem.room != nullptr ? *problem.room : own_room_)
   {
+    room_.edges.assign(problem.edges.points != nullptr ? problem.edges.points->size() : 0, FoundSurface());
   }
 
   SurfaceRegistration run()
@@ -227,7 +228,7 @@ private:
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.weighs_evidence = weighs_evidence_;
     residuals.threads = problem_.threads;
-    return residuals.sumsOf(problem_.scan, problem_.edges, stride, parts_);
+    return residuals.sumsOf(problem_.scan, problem_.edges, stride, room_);
   }
 
   struct Equations {
@@ -270,8 +271,8 @@ private:
   Square12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
-  std::vector<SurfaceSums> own_parts_;
-  std::vector<SurfaceSums>& parts_;
+  SurfaceRoom own_room_;
+  SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration
   Matrix6 net_ = Matrix6::Zero();
   std::vector<WeakDirection> weak_;

@@ -33,17 +33,6 @@ constexpr double kNoExtent = 1e-9;
 constexpr std::size_t kPointsPerChunk = 64;
 static_assert(3 * kPointsPerChunk <= ResidualRows::kRoom, "a point has up to three residuals");
 
-/// What a normal or a line's direction that is off along \p tilt adds to H: t t^T with the row t = (tilt, arm x tilt);
-/// the upper half.
-void addNoise(const Eigen::Vector3d& tilt, const Eigen::Vector3d& arm, Matrix6& noise)
-{
-  Eigen::Matrix<double, 6, 1> row;
-  row << tilt, arm.cross(tilt);
-  for (Eigen::Index i = 0; i < 6; ++i) {
-    noise.row(i).tail(6 - i) += row[i] * row.tail(6 - i).transpose();
-  }
-}
-
 /// How much of a residual counts along a run. The return may be any place of it, so that its variance there is that of
 /// an even distribution, L^2 / 12, beside what it is elsewhere (no equation of the paper: it registers smooth points
 /// with planes alone).
@@ -53,20 +42,36 @@ double feltAlongRun(double squared_run, double variance)
   return std::sqrt(variance / (variance + squared_run / kEven));
 }
 
-void mirrorUpperHalf(Matrix6& m)
-{
-  for (Eigen::Index row = 1; row < 6; ++row) {
-    for (Eigen::Index column = 0; column < row; ++column) {
-      m(row, column) = m(column, row);
-    }
-  }
-}
-
 std::size_t chunksOf(const SurfaceTerm& term, std::size_t stride)
 {
   const bool is_given = term.points != nullptr && term.target != nullptr;
   const std::size_t count = is_given ? (term.points->size() + stride - 1) / stride : 0;
   return (count + kPointsPerChunk - 1) / kPointsPerChunk;
+}
+
+/// Looks for the surfaces of those points alone that are elsewhere than when they were found before.
+void findAgain(const SurfaceSearch& target, const Eigen::Vector3d* places, const std::uint32_t* lasers,
+               std::size_t count, FoundSurface* found, Surface* surfaces)
+{
+  constexpr double kNegligible = 0.005;  // m: a quarter of what a return may be off
+  std::array<Eigen::Vector3d, kPointsPerChunk> moved;
+  std::array<std::uint32_t, kPointsPerChunk> lasers_of_moved;
+  std::array<std::size_t, kPointsPerChunk> which;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!((places[i] - found[i].at).squaredNorm() < kNegligible * kNegligible)) {
+      moved[n] = places[i];
+      lasers_of_moved[n] = lasers[i];
+      which[n++] = i;
+    }
+  }
+  target.find(moved.data(), lasers_of_moved.data(), n, surfaces);
+  for (std::size_t k = 0; k < n; ++k) {
+    found[which[k]] = {moved[k], surfaces[k]};
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    surfaces[i] = found[i].surface;
+  }
 }
 
 template <typename Iterator>
@@ -87,20 +92,23 @@ void SurfaceSums::add(const SurfaceSums& other)
 }
 
 SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                   std::vector<SurfaceSums>& parts) const
+                                   SurfaceRoom& room) const
 {
+  std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = chunksOf(scan, stride);
   parts.resize(of_scan + chunksOf(edges, 1));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
     const auto c = static_cast<std::size_t>(part);
-    parts[c] = c < of_scan ? chunkOf(scan, c, stride) : chunkOf(edges, c - of_scan, 1);
+    parts[c] = c < of_scan ? chunkOf(scan, c, stride, nullptr) : chunkOf(edges, c - of_scan, 1, room.edges.data());
   }
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
-SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const
+/// \param found before, of all points of the term; nullptr: it is not kept
+SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
+                                      FoundSurface* found) const
 {
   const std::size_t begin = chunk * kPointsPerChunk;
   const std::size_t end = std::min((term.points->size() + stride - 1) / stride, begin + kPointsPerChunk);
@@ -111,6 +119,7 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   std::array<Surface, kPointsPerChunk> surfaces;
   ResidualRows rows;
   ResidualRows nearest;
+  ResidualRows noise;  // what normals and lines' directions that are off add to H
   const SE3& pose = sensor.pose();
   const ScanPoint* points = term.points->data() + begin * stride;
   sensor.undistorted(points, stride, end - begin, places.data());
@@ -126,24 +135,30 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
       p.run = pose.rotation * Eigen::Vector3f::Map(points[i * stride].run.data()).cast<double>();
     }
   }
-  term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
+  if (found == nullptr) {
+    term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());
+  } else {
+    findAgain(*term.target, places.data(), lasers.data(), end - begin, found + begin, surfaces.data());
+  }
   for (std::size_t i = 0; i < end - begin; ++i) {
     switch (surfaces[i].kind) {
-      case SurfaceKind::plane: addPlane(placed[i], surfaces[i], rows, sums); break;
-      case SurfaceKind::line: addLine(placed[i], surfaces[i], rows, sums); break;
+      case SurfaceKind::plane: addPlane(placed[i], surfaces[i], rows, noise, sums); break;
+      case SurfaceKind::line: addLine(placed[i], surfaces[i], rows, noise, sums); break;
       case SurfaceKind::point: addPoint(placed[i], surfaces[i], nearest, sums); break;
       case SurfaceKind::unknown: break;
     }
   }
   nearest.addTo(sums.equations);
-  sums.equations.noise_information += kNearestByChance * sums.equations.information;
+  NormalEquations by_noise;
+  noise.addTo(by_noise);
+  sums.equations.noise_information = by_noise.information + kNearestByChance * sums.equations.information;
   rows.addTo(sums.equations);
-  mirrorUpperHalf(sums.equations.noise_information);
   return sums;
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
-void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const
+void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
+                                SurfaceSums& sums) const
 {
   const Eigen::Vector3d from_center = p.place - plane.center;
   const double r = plane.direction.dot(from_center);
@@ -158,16 +173,17 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   weighEvidence(r * r, variance, 1.0, sums);
   rows.add(plane.direction, p.arm, r, w, p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
-  const double noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
+  const double by_noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
   const bool is_wide = plane.width > 0.0;
   const Eigen::Vector3d wide = is_wide ? plane.wide : Eigen::Vector3d(plane.direction.unitOrthogonal());
-  addNoise(std::sqrt(noise / (is_wide ? plane.width : extent)) * wide, p.arm, sums.equations.noise_information);
-  addNoise(std::sqrt(noise / extent) * plane.direction.cross(wide), p.arm, sums.equations.noise_information);
+  noise.add(wide, p.arm, 0.0, by_noise / (is_wide ? plane.width : extent), 0.0);
+  noise.add(plane.direction.cross(wide), p.arm, 0.0, by_noise / extent, 0.0);
   ++sums.equations.planes;
 }
 
 /// Eq. 5 and 13: the distance across the line, in two directions.
-void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const
+void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, ResidualRows& rows, ResidualRows& noise,
+                               SurfaceSums& sums) const
 {
   const double variance = kRangeNoise * kRangeNoise + line.thickness;
   const Eigen::Vector3d from_center = p.place - line.center;
@@ -187,11 +203,11 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   rows.add(along, p.arm, second, w, p.since_middle);
   // Two points go into the line; its direction may be off to two sides.
   const double count = std::max(1.0, static_cast<double>(line.count));
-  const double noise = w * (line.thickness + 2.0 * kRangeNoise * kRangeNoise / count) / count;
-  const double tilt = std::sqrt(2.0 * noise / std::max(line.extent, kNoExtent));
+  const double by_noise = w * (line.thickness + 2.0 * kRangeNoise * kRangeNoise / count) / count;
+  const double tilt = 2.0 * by_noise / std::max(line.extent, kNoExtent);
   for (const Eigen::Vector3d& axis :
        {Eigen::Vector3d(line.direction), other, Eigen::Vector3d(other.cross(line.direction))}) {
-    addNoise(tilt * axis, p.arm, sums.equations.noise_information);
+    noise.add(axis, p.arm, 0.0, tilt, 0.0);
   }
   ++sums.equations.edges;
 }

@@ -7,6 +7,7 @@
 #include "registration/sweep_points.h"
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -44,6 +45,18 @@ struct SweepSums {
   }
 };
 
+/// What was found at a place.
+struct FoundSurface {
+  Eigen::Vector3d at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());  ///< nothing yet
+  Surface surface;
+};
+
+/// Memory of one registration, which the next one may use again.
+struct SurfaceRoom {
+  std::vector<SurfaceSums> parts;   ///< of the chunks
+  std::vector<FoundSurface> edges;  ///< by the edge
+};
+
 /// The residuals at one estimate of pose and motion.
 struct SurfaceResiduals {
   MovingSensor sensor;
@@ -54,14 +67,16 @@ struct SurfaceResiduals {
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
   /// \param stride one of the scan's points in so many
-  /// \param parts room for the chunks' sums
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                 std::vector<SurfaceSums>& parts) const;
+                                 SurfaceRoom& room) const;
 
 private:
-  [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride) const;
-  void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, SurfaceSums& sums) const;
-  void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, SurfaceSums& sums) const;
+  [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
+                                    FoundSurface* found) const;
+  void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
+                SurfaceSums& sums) const;
+  void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, ResidualRows& noise,
+               SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
   [[nodiscard]] double weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
                               SurfaceSums& sums) const;

@@ -71,6 +71,7 @@ private:
     std::uint64_t cubes = 0;
   };
 
+  void sample(const std::vector<ScanPoint>& points, double side, std::size_t enough, std::vector<ScanPoint>& sample);
   void addFirst(const struct ReturnBatch& batch, float inverse_side, std::vector<ScanPoint>& sample);
   [[nodiscard]] bool isFirst(std::uint64_t cube);
   void forget();
