@@ -24,25 +24,28 @@ constexpr float kGap = 0.02F;
 /// Two returns that lie behind one another are of two things: the least sine of the angle between step and ray.
 constexpr float kBehind = 0.05F;
 
-/// Neighbours on a scan line, of which some about the middle one are on a straight run.
+/// Neighbours on a scan line, of which some about the middle one are on a straight run. Lengths are compared by their
+/// squares.
 class StraightRun {
 public:
   /// \param place the point's own, between \p begin and \p end of its line
   StraightRun(const ScanReturns& returns, std::ptrdiff_t place, std::ptrdiff_t begin, std::ptrdiff_t end)
       : low_(kAside - std::min(kAside, place - begin)), high_(kAside + std::min(kAside, end - 1 - place))
   {
-    for (std::ptrdiff_t i = low_; i <= high_; ++i) {
-      const auto k = static_cast<std::size_t>(returns.lines.index[static_cast<std::size_t>(place + i - kAside)]);
-      at(i) = {returns.cloud.x(k), returns.cloud.y(k), returns.cloud.z(k)};
+    for (std::ptrdiff_t i = 0; i < kPlaces; ++i) {  // beyond the line's ends its last points stand, which are not used
+      const std::ptrdiff_t at = place + std::clamp(i, low_, high_) - kAside;
+      const auto k = static_cast<std::size_t>(returns.lines.index[static_cast<std::size_t>(at)]);
+      const auto n = static_cast<std::size_t>(i);
+      x_[n] = returns.cloud.x(k);
+      y_[n] = returns.cloud.y(k);
+      z_[n] = returns.cloud.z(k);
     }
-    for (std::ptrdiff_t i = low_; i < high_; ++i) {
-      steps_[static_cast<std::size_t>(i)] = (at(i + 1) - at(i)).norm();
-    }
+    lookAtSteps();
     for (std::ptrdiff_t i = kAside; i > low_; --i) {
-      low_ = areNext(i - 1, i) ? low_ : i;
+      low_ = areNext(i - 1) ? low_ : i;
     }
     for (std::ptrdiff_t i = kAside; i < high_; ++i) {
-      high_ = areNext(i, i + 1) ? high_ : i;
+      high_ = areNext(i) ? high_ : i;
     }
     if (isRun(low_, high_)) {  // as most are
       first_ = low_;
@@ -64,10 +67,40 @@ public:
   }
 
 private:
-  Eigen::Vector3f& at(std::ptrdiff_t i) { return places_[static_cast<std::size_t>(i)]; }
-  [[nodiscard]] const Eigen::Vector3f& at(std::ptrdiff_t i) const { return places_[static_cast<std::size_t>(i)]; }
+  static constexpr std::ptrdiff_t kPlaces = 2 * kAside + 1;
+  static constexpr std::size_t kSteps = 8;  ///< what registers hold, the last two of nothing
+  template <std::size_t count>
+  using Column = std::array<float, count>;
 
-  [[nodiscard]] float step(std::ptrdiff_t i) const { return steps_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] Eigen::Vector3f at(std::ptrdiff_t i) const
+  {
+    const auto n = static_cast<std::size_t>(i);
+    return {x_[n], y_[n], z_[n]};
+  }
+  [[nodiscard]] float step(std::ptrdiff_t i) const { return squared_step_[static_cast<std::size_t>(i)]; }
+
+  /// Side by side.
+  void lookAtSteps()
+  {
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      const float dx = x_[i + 1] - x_[i];
+      const float dy = y_[i + 1] - y_[i];
+      const float dz = z_[i + 1] - z_[i];
+      squared_step_[i] = dx * dx + dy * dy + dz * dz;
+      const float cross_x = y_[i] * z_[i + 1] - z_[i] * y_[i + 1];
+      const float cross_y = z_[i] * x_[i + 1] - x_[i] * z_[i + 1];
+      const float cross_z = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
+      squared_cross_[i] = cross_x * cross_x + cross_y * cross_y + cross_z * cross_z;
+      dot_[i] = x_[i] * x_[i + 1] + y_[i] * y_[i + 1] + z_[i] * z_[i + 1];
+    }
+  }
+
+  /// Whether nothing is missing between a place and the one after it.
+  [[nodiscard]] bool areNext(std::ptrdiff_t i) const
+  {
+    const auto n = static_cast<std::size_t>(i);
+    return dot_[n] > 0.0F && squared_cross_[n] < kGap * kGap * dot_[n] * dot_[n];
+  }
 
   /// Takes a neighbour in, or ends the run on its side.
   void goOn(std::ptrdiff_t first, std::ptrdiff_t last)
@@ -82,33 +115,31 @@ private:
     }
   }
 
-  [[nodiscard]] bool areNext(std::ptrdiff_t a, std::ptrdiff_t b) const
-  {
-    return at(a).cross(at(b)).norm() < kGap * at(a).dot(at(b));
-  }
-
   [[nodiscard]] bool isRun(std::ptrdiff_t first, std::ptrdiff_t last) const
   {
     if (first == last) {
       return false;
     }
-    const auto [shortest, longest] = std::minmax_element(steps_.begin() + first, steps_.begin() + last);
-    return *longest <= kUneven * *shortest && isStraight(first, last);
+    const auto [shortest, longest] = std::minmax_element(squared_step_.begin() + first, squared_step_.begin() + last);
+    return *longest <= kUneven * kUneven * *shortest && isStraight(first, last);
   }
 
   [[nodiscard]] bool isStraight(std::ptrdiff_t first, std::ptrdiff_t last) const
   {
-    const Eigen::Vector3f chord = at(last) - at(first);
-    const float length = chord.norm();
+    const Eigen::Vector3f begin = at(first);
+    const Eigen::Vector3f chord = at(last) - begin;
+    const float squared_length = chord.squaredNorm();
     if (last - first == 1) {
-      return chord.cross(at(kAside)).norm() > kBehind * length * at(kAside).norm();
+      const Eigen::Vector3f middle = at(kAside);
+      return chord.cross(middle).squaredNorm() > kBehind * kBehind * squared_length * middle.squaredNorm();
     }
     float before = 0.0F;
     for (std::ptrdiff_t i = first + 1; i < last; ++i) {
-      const Eigen::Vector3f from_first = at(i) - at(first);
+      const Eigen::Vector3f from_first = at(i) - begin;
       const float along = chord.dot(from_first);
       // What is not finite is not straight.
-      if (!(along > before && along < length * length && chord.cross(from_first).norm() <= kStraight * length)) {
+      if (!(along > before && along < squared_length &&
+            chord.cross(from_first).squaredNorm() <= kStraight * kStraight * squared_length)) {
         return false;
       }
       before = along;
@@ -116,8 +147,12 @@ private:
     return true;
   }
 
-  std::array<Eigen::Vector3f, 2 * kAside + 1> places_;
-  std::array<float, 2 * kAside> steps_{};  // from each to the next
+  Column<kSteps + 1> x_{};
+  Column<kSteps + 1> y_{};
+  Column<kSteps + 1> z_{};
+  Column<kSteps> squared_step_{};  // from each place to the next
+  Column<kSteps> squared_cross_{};
+  Column<kSteps> dot_{};
   std::ptrdiff_t low_;
   std::ptrdiff_t high_;
   std::ptrdiff_t first_ = kAside;
