@@ -38,8 +38,7 @@ private:
     int row;  ///< out of [0, kRows) where it is steeper
   };
 
-  /// The cells above and below one are looked at with it, so columns are what is contiguous: to look through the map
-  /// with a scan of the real drive took 4.9 ms row by row, with the returns' coordinates in each cell, and takes 4.0.
+  /// The cells above and below one are looked at with it, so columns are what is contiguous.
   [[nodiscard]] static std::size_t placeOf(int column, int row, int rows)
   {
     return static_cast<std::size_t>(column) * static_cast<std::size_t>(rows) + static_cast<std::size_t>(row);

@@ -1,6 +1,6 @@
 #include "odometry/map_building.h"
 
-#include "registration/sweep_points.h"
+#include "common/sweep_trajectory.h"
 
 #include <pcl_floam/filters/sweep_motion.h>
 
@@ -14,17 +14,15 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr double kMiddle = 0.5;
-
 SweepMotion motionDuring(const SweepPose& pose)
 {
-  return SweepMotion(pose.twist, kMiddle, pose.acceleration);
+  return SweepMotion(pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
 }
 
 void undistort(const std::vector<ScanPoint>& measured, const SweepPose& pose, int threads,
                std::vector<Eigen::Vector3f>& points)
 {
-  const MovingSensor sensor(SE3(), pose.twist, pose.acceleration);
+  const SweepTrajectory sensor(SE3(), pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
   points.resize(measured.size());
   constexpr std::ptrdiff_t kTogether = 256;
   const auto count = static_cast<std::ptrdiff_t>(points.size());

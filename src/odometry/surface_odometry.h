@@ -5,6 +5,7 @@
 #include "common/side_by_side.h"
 #include "odometry/first_scans.h"
 #include "odometry/odometry_run.h"
+#include "odometry/reason_to_doubt.h"
 #include "odometry/tracker.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ struct SurfaceOdometry : OdometryRun {
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
-    if (lacksStructure()) {
+    if (scan.lacks(parameters.structure)) {
       return predictOnly(toString(scan.lines.failure));
     }
     if (!has_enough_points) {
@@ -79,7 +80,7 @@ struct SurfaceOdometry : OdometryRun {
     constexpr std::size_t kFewest = 20;
     const ScanReturns returns = scan.returnsOf(cloud, parameters);
     has_enough_points = returns.areAtLeast(kFewest);
-    if (!lacksStructure() && has_enough_points) {
+    if (!scan.lacks(parameters.structure) && has_enough_points) {
       tracker.sample(returns, sweep);
     } else {
       sweep.dense.clear();  // the last scan's
@@ -87,39 +88,14 @@ struct SurfaceOdometry : OdometryRun {
     }
   }
 
-  [[nodiscard]] bool lacksStructure() const
-  {
-    return parameters.structure == ScanStructure::scan_lines && !scan.lines.valid();
-  }
-
-  /// A pose that the map does not bear out is not called tracked, nor one that only the expectation holds. The first
-  /// sweeps' map is too young to tell.
   TrackingState judge()
   {
-    if (tracker.isUndecided()) {
-      report.reason = "several motions explain the first scans: the pose may be wrong";
-      return TrackingState::doubtful;
-    }
-    if (report.explained < kBorneOut && !tracker.isOpen()) {
-      report.reason = "the map has no surface for most of the scan: the pose may be wrong";
-      return TrackingState::doubtful;
-    }
-    if (scan.lines.failure == ScanLineFailure::too_few_lines) {
-      report.reason = "the scan lines are too few to bear each other out: their own pattern may hold the pose";
-      return TrackingState::doubtful;
-    }
-    if (scan.lines.failure == ScanLineFailure::single_layer && !keepsLevel()) {
-      report.reason = "the scan is a single layer: height, roll and pitch may be wrong";
+    const char* doubt = reasonToDoubt(tracker, scan.lines.failure, report.explained, parameters.registration.locked);
+    if (doubt != nullptr) {
+      report.reason = doubt;
       return TrackingState::doubtful;
     }
     return toldState();
-  }
-
-  [[nodiscard]] bool keepsLevel() const
-  {
-    const DegreesOfFreedom& locked = parameters.registration.locked;
-    return std::equal(locked.begin(), locked.end(), kPlanarMotion.begin(),
-                      [](bool is, bool asked) { return is || !asked; });
   }
 
   /// The first scan: its motion is found with the second.
@@ -238,20 +214,17 @@ struct SurfaceOdometry : OdometryRun {
   {
     report.reason = reason;
     report.told_deviation = ToldMotion::kNothing;
-    const bool started = tracker.hasBegun() || map_building.hasPrior();
     first_scans.miss();
-    finish(started ? TrackingState::predicted : TrackingState::not_started);
+    finish(tracker.hasBegun() || map_building.hasPrior() ? TrackingState::predicted : TrackingState::not_started);
   }
 
   void finish(TrackingState state)
   {
     report.state = state;
     report.world_T_sensor = initial_pose;
-    if (tracker.isTracking()) {
-      describeTime();
-    }
     report.provisional = tracker.isAmbiguous();
     if (tracker.isTracking()) {
+      describeTime();
       report.world_T_sensor = world_T_track * poseNow().at(poseFraction());
       turnIntoWorld(report, world_T_track);
     }

@@ -25,27 +25,6 @@ SweepPlacement placementOf(CompensationMode mode)
   }
 }
 
-/// Of a pose that a single motion has led to, for so many periods: one that is not known at all.
-Matrix12 oneMotion(double periods)
-{
-  constexpr double kRest = 1e-6;  // by how much it may be another at the end
-  Eigen::Matrix<double, 12, 12> covariance = Eigen::Matrix<double, 12, 12>::Identity();
-  covariance.topLeftCorner<6, 6>() *= periods * periods;
-  covariance.topRightCorner<6, 6>().diagonal().setConstant(periods);
-  covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
-  covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
-  return covariance;
-}
-
-/// How far a motion is from what was told of it, in its standard deviations.
-double squaredError(const SE3& motion, const MotionHint& hint)
-{
-  const SE3 off = hint.last_T_now.inverse() * motion;
-  Eigen::Matrix<double, 6, 1> error;
-  error << off.translation, logSO3(off.rotation);
-  return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
-}
-
 /// Whether the sensor may be anywhere by now.
 bool isLong(const Sweep& sweep)
 {
@@ -63,92 +42,6 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found)
 }
 
 }  // namespace
-
-void Track::beginMap()
-{
-  if (map_) {
-    return map_->clear();
-  }
-  map_.emplace(settings_);
-}
-
-SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
-{
-  constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
-  SurfaceRegistration found;
-  SE3 first_T_second = exp(second.periods * look.velocity);
-  double far = look.far;
-  for (int round = 0; round < look.rounds; ++round, far *= 0.5) {
-    const Vector6 motion = log(first_T_second) / second.periods;
-    beginMap();
-    map_->insert(first, {SE3(), fractionOf(first) * motion});
-    motion_ = MotionEstimate(SE3(), motion);
-    motion_.predict(second.periods);
-    SurfaceProblem problem = problemFor(second);
-    problem.reach = reachOf({far, kTurnPerMetre * far});
-    problem.prior.pose_counts = false;
-    problem.prior.covariance = oneMotion(second.periods);
-    problem.wants_evidence = round + 1 == look.rounds;
-    found = registerSurfaces(problem);
-    if (!found.report.hasConverged()) {
-      return found;
-    }
-    first_T_second = found.report.target_T_source;
-  }
-  evidence_ = found.evidence;
-  if (second.hint) {
-    evidence_ -= 0.5 * squaredError(first_T_second, *second.hint);
-  }
-  return found;
-}
-
-SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const FirstLook& look)
-{
-  SurfaceRegistration found = findMotion(first, second, look);
-  if (found.report.hasConverged()) {
-    beginMap();
-    map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
-    motion_.learnNothing();  // it was supposed, not predicted
-    update(second, found);
-    updateMap(second);
-  }
-  return found;
-}
-
-void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
-{
-  constexpr Doubt kKnown = {0.01, 0.01};
-  beginMap();
-  Vector6 velocity = Vector6::Zero();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::size_t next = std::max<std::size_t>(i, 1);
-    velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
-    pose_ = {poses[i], fractionOf(sweeps[i]) * velocity};
-    if (i == 0) {
-      motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
-      motion_.place(poses[i], covarianceOf(kKnown));
-    } else {
-      motion_.predict(sweeps[i].periods);
-      motion_.correct(poses[i], covarianceOf(kKnown));
-    }
-    if (keyframes[i]) {
-      map_->insert(sweeps[i], pose_);
-      keyframe_ = poses[i];
-    }
-  }
-}
-
-void Track::makeMap(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
-                    const std::vector<bool>& keyframes)
-{
-  beginMap();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (keyframes[i]) {
-      map_->insert(sweeps[i], poses[i]);
-      keyframe_ = poses[i].middle;
-    }
-  }
-}
 
 SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map)
 {

@@ -1,7 +1,7 @@
 #include "odometry/track_map.h"
 
+#include "common/sweep_trajectory.h"
 #include "map/voxel_pyramid.h"
-#include "registration/sweep_points.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace pcl_floam {
 
 namespace {
 
-void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const MovingSensor& sensor)
+void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const SweepTrajectory& sensor)
 {
   constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
@@ -57,7 +57,7 @@ void TrackMap::clear()
 
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
-  const MovingSensor sensor(pose.middle, pose.twist, pose.acceleration);
+  const SweepTrajectory sensor(pose.middle, pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
   insertInto(*space_, sweep.dense, sensor);
   insertInto(edges_, sweep.edges, sensor);
   space_->crop(pose.middle.translation, horizon_);

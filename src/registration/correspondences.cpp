@@ -76,12 +76,14 @@ void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem&
 #pragma omp for schedule(dynamic, 4)
     for (std::ptrdiff_t b = 0; b < batches; ++b) {
       const std::size_t first = static_cast<std::size_t>(b) * Batch::kMost;
+      const std::size_t last = std::min(first + Batch::kMost, looked_at);
+      std::array<Eigen::Vector3d, Batch::kMost> places;
+      trajectory.undistorted(&kind.features[first * stride], stride, last - first, places.data());
       batch.begin();
-      for (std::size_t n = first; n < std::min(first + Batch::kMost, looked_at); ++n) {
-        const Feature& feature = kind.features[n * stride];
+      for (std::size_t n = first; n < last; ++n) {
         Correspondence& correspondence = correspondences[n * stride];
-        correspondence.point = trajectory.at(Eigen::Vector3d(feature.x, feature.y, feature.z), feature.time);
-        correspondence.since_reference = trajectory.sinceReference(feature.time);
+        correspondence.point = trajectory.pose() * places[n - first];
+        correspondence.since_reference = trajectory.sinceReference(static_cast<double>(kind.features[n * stride].time));
         if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
           batch.ask(n * stride, problem.origin + correspondence.point);
         }

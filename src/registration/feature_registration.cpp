@@ -89,9 +89,9 @@ private:
   {
     if (model.follows_pose) {
       const Vector6 motion = log(model.held_pose.inverse() * local_T_sensor);
-      return {local_T_sensor, model.sweep_per_motion * motion, model.reference};
+      return SweepTrajectory(local_T_sensor, model.sweep_per_motion * motion, model.reference);
     }
-    return {local_T_sensor, model.twist, model.reference};
+    return SweepTrajectory(local_T_sensor, model.twist, model.reference);
   }
 
   [[nodiscard]] SE3 pose() const

@@ -222,7 +222,7 @@ private:
 
   [[nodiscard]] SweepSums accumulate(double look, std::size_t stride)
   {
-    SurfaceResiduals residuals{MovingSensor(pose_, twist(), acceleration())};
+    SurfaceResiduals residuals{SweepTrajectory(pose_, twist(), SweepTrajectory::kMiddle, acceleration())};
     residuals.reach = look * look * problem_.reach;
     residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;

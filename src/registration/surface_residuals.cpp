@@ -65,7 +65,9 @@ void findAgain(const SurfaceSearch& target, const Eigen::Vector3d* places, const
       which[n++] = i;
     }
   }
-  target.find(moved.data(), lasers_of_moved.data(), n, surfaces);
+  if (n > 0) {
+    target.find(moved.data(), lasers_of_moved.data(), n, surfaces);
+  }
   for (std::size_t k = 0; k < n; ++k) {
     found[which[k]] = {moved[k], surfaces[k]};
   }
@@ -127,7 +129,7 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
     PlacedPoint& p = placed[i];
     p.arm = pose.rotation * places[i];
     p.place = places[i] = pose.translation + p.arm;
-    p.since_middle = periods * MovingSensor::sinceMiddle(points[i * stride]);
+    p.since_middle = periods * sensor.sinceReference(static_cast<double>(points[i * stride].time));
     // At rest a laser draws the same curve again, place by place: what is no information about the pose is evidence
     // for it.
     lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;

@@ -2,9 +2,9 @@
 /// How far a sweep's points are from the surfaces of a map, summed up.
 #pragma once
 
+#include "common/sweep_trajectory.h"
 #include "registration/normal_equations.h"
 #include "registration/surface_registration.h"
-#include "registration/sweep_points.h"
 
 #include <cstddef>
 #include <limits>
@@ -59,7 +59,7 @@ struct SurfaceRoom {
 
 /// The residuals at one estimate of pose and motion.
 struct SurfaceResiduals {
-  MovingSensor sensor;
+  SweepTrajectory sensor;           ///< its reference is mid-sweep
   Matrix6 reach = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
   double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
   bool weighs_evidence = false;     ///< else the sums have none

@@ -2,7 +2,6 @@
 #include "registration/surface_registration.h"
 
 #include "map/voxel_pyramid.h"
-#include "registration/sweep_points.h"
 #include "support/corner.h"
 #include "support/random_motion.h"
 
@@ -46,7 +45,7 @@ public:
 double evidenceIn(Everywhere& map, double off)
 {
   map.off = off;
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   SurfaceProblem problem = problemOf(points, map);
   problem.wants_evidence = true;
   problem.locked = {true, true, true, true, true, true};
@@ -55,29 +54,12 @@ double evidenceIn(Everywhere& map, double off)
 
 }  // namespace
 
-TEST(MovingSensor, IsTheExponentialOfTheTwist)
-{
-  std::mt19937 random(7);
-  for (int i = 0; i < 50; ++i) {
-    const SE3 pose = exp(test::randomTwist(random, 5.0, 2.0));
-    const Vector6 twist = test::randomTwist(random, 2.0, 0.4);
-    const Vector6 acceleration = test::randomTwist(random, 0.4, 0.1);
-    const MovingSensor sensor(pose, twist, acceleration);
-    const ScanPoint point{static_cast<float>(test::uniform(random, 20.0)),      3.0F, -1.0F,
-                          static_cast<float>(0.5 + test::uniform(random, 0.5)), 0,    -1};
-    const double u = MovingSensor::sinceMiddle(point);
-    const SE3 at = pose * exp(u * twist + 0.5 * u * u * acceleration);
-    const Eigen::Vector3d expected = at * Eigen::Vector3d(point.x, point.y, point.z);
-    EXPECT_LT((sensor.at(point) - expected).norm(), 2e-4);
-  }
-}
-
 TEST(SurfaceRegistration, FindsAKnownPose)
 {
   std::mt19937 random(8);
   for (int i = 0; i < 10; ++i) {
     const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
-    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+    const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
     const Corner corner(3);
     const RegistrationReport report = registerSurfaces(problemOf(points, corner)).report;
     ASSERT_TRUE(report.hasConverged());
@@ -88,7 +70,7 @@ TEST(SurfaceRegistration, FindsAKnownPose)
 /// It is the next sweep's prior: what were left would grow from sweep to sweep, until the prior pushes away.
 TEST(SurfaceRegistration, ThePosteriorIsSymmetricToTheBit)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   const Corner corner(3);
   const SurfaceRegistration found = registerSurfaces(problemOf(points, corner));
   ASSERT_TRUE(found.report.hasConverged());
@@ -101,7 +83,7 @@ TEST(SurfaceRegistration, FindsThePoseOfASweepAndItsMotionWithIt)
   for (int i = 0; i < 10; ++i) {
     const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
     const Vector6 twist = test::randomTwist(random, 0.3, 0.08);
-    const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, twist), 900);
+    const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth, twist), 900);
     const Corner corner(3);
     SurfaceProblem problem = problemOf(points, corner);
     EXPECT_GT(distance(registerSurfaces(problem).report.target_T_source, truth), 1e-3)
@@ -120,7 +102,7 @@ TEST(SurfaceRegistration, FindsTheAccelerationFromTheVelocityBefore)
   const SE3 truth = exp(test::randomTwist(random, 0.3, 0.05));
   const Vector6 before = test::randomTwist(random, 0.2, 0.05);
   const Vector6 twist = test::randomTwist(random, 0.2, 0.05);
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth, twist, 0.5 * (twist - before)), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth, twist, 0.5, 0.5 * (twist - before)), 900);
   const Corner corner(3);
   SurfaceProblem problem = problemOf(points, corner);
   problem.prior.fraction = 1.0;
@@ -135,7 +117,7 @@ TEST(SurfaceRegistration, FindsTheAccelerationFromTheVelocityBefore)
 TEST(SurfaceRegistration, TheVelocityFollowsThePoseAsThePriorHasIt)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.1, 0.05, 0.0));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner corner(3);
   SurfaceProblem problem = problemOf(points, corner);
   problem.placement = SweepPlacement::held;
@@ -173,7 +155,7 @@ TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
 TEST(SurfaceRegistration, LockedDegreesOfFreedomKeepTheGuess)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner corner(3);
   SurfaceProblem problem = problemOf(points, corner);
   problem.locked = kPlanarMotion;
@@ -186,7 +168,7 @@ TEST(SurfaceRegistration, LockedDegreesOfFreedomKeepTheGuess)
 TEST(SurfaceRegistration, EvidenceIsHighestAtTheTruth)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner corner(3);
   SurfaceProblem problem = problemOf(points, corner);
   problem.wants_evidence = true;
@@ -227,7 +209,7 @@ TEST(SurfaceRegistration, WhatIsInOnePlaceTellsMoreThanWhatIsInOnePlane)
 
 TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
 {
-  std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   for (std::size_t i = 0; i < points.size(); i += 5) {  // a fifth lies 0.7 m off its wall
     points[i].x += 0.7F;
     points[i].y += 0.7F;
@@ -239,7 +221,7 @@ TEST(SurfaceRegistration, SomethingInTheWayDoesNotDrawThePose)
 
 TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(exp(Vector6::Constant(0.05))), 3000);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(exp(Vector6::Constant(0.05))), 3000);
   VoxelPyramid map(0.3);
   for (const ScanPoint& point : points) {
     map.insert({point.x, point.y, point.z}, static_cast<std::uint32_t>(point.time * 16.0F));
@@ -258,7 +240,7 @@ TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
 
 TEST(SurfaceRegistration, TellsWhenThereIsNothingToRegisterWith)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   const VoxelPyramid nothing(0.3);
   EXPECT_EQ(registerSurfaces(problemOf(points, nothing)).report.termination, Termination::empty_target);
   const std::vector<ScanPoint> few(points.begin(), points.begin() + 10);

@@ -20,7 +20,7 @@ using test::sweepOf;
 TEST(SurfaceRegistration, WhatCannotBeSeenGetsNoInformationAndKeepsTheGuess)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.3, -0.2, 0.1));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner floor(1);
   SurfaceProblem problem = problemOf(points, floor);
   problem.prior.pose_counts = true;
@@ -41,7 +41,7 @@ TEST(SurfaceRegistration, WhatIsSeenDoesNotMoveThePoseAlongWhatIsNot)
   constexpr double kUnseen = 1.0;  // m, standard deviation
   constexpr double kSlope = 0.02;
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.02));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner corridor(2);  // along x
   SurfaceProblem problem = problemOf(points, corridor);
   problem.prior.pose_counts = true;
@@ -176,7 +176,7 @@ TEST(UntoldMotions, NearestPointsTellSomeByChance)
 TEST(UntoldMotions, NoiseDoesNotMoveThePoseAlongThem)
 {
   const SE3 truth(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.1));
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(truth), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const NoisyFloor floor;
   SurfaceProblem problem = problemOf(points, floor);
   problem.prior.pose.translation.x() = 0.3;
@@ -191,7 +191,7 @@ TEST(UntoldMotions, NoiseDoesNotMoveThePoseAlongThem)
 
 TEST(UntoldMotions, AreNamedAtRightAngles)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   const std::vector<WeakDirection> weak = registerSurfaces(onAFloor(points)).report.weak_directions;
   ASSERT_EQ(weak.size(), 3U);
   for (std::size_t i = 0; i < weak.size(); ++i) {
@@ -207,7 +207,7 @@ TEST(UntoldMotions, AreNamedAtRightAngles)
 /// Somebody else tells of a way that is none of those that come out first.
 TEST(UntoldMotions, WhatAFactorTellsOfIsNotNamedAndNothingElse)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   const Vector6 told = (Vector6::Unit(0) + 2.0 * Vector6::Unit(1)) / std::sqrt(5.0);
   const Vector6 across = (2.0 * Vector6::Unit(0) - Vector6::Unit(1)) / std::sqrt(5.0);
   const PoseFactors factors{{std::make_shared<OneWay>(told)}, SE3()};
@@ -222,7 +222,7 @@ TEST(UntoldMotions, WhatAFactorTellsOfIsNotNamedAndNothingElse)
 
 TEST(UntoldMotions, WhatIsLockedIsNotNamed)
 {
-  const std::vector<ScanPoint> points = sweepOf(MovingSensor(SE3()), 900);
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   SurfaceProblem problem = onAFloor(points);
   problem.locked = {false, true, false, false, false, true};
   const std::vector<WeakDirection> weak = registerSurfaces(problem).report.weak_directions;

@@ -1,0 +1,35 @@
+#include "odometry/reason_to_doubt.h"
+
+#include <algorithm>
+
+namespace pcl_floam {
+
+namespace {
+
+bool keepsLevel(const DegreesOfFreedom& locked)
+{
+  return std::equal(locked.begin(), locked.end(), kPlanarMotion.begin(),
+                    [](bool is, bool asked) { return is || !asked; });
+}
+
+}  // namespace
+
+const char* reasonToDoubt(const Tracker& tracker, ScanLineFailure failure, double explained,
+                          const DegreesOfFreedom& locked)
+{
+  if (tracker.isUndecided()) {
+    return "several motions explain the first scans: the pose may be wrong";
+  }
+  if (explained < kBorneOut && !tracker.isOpen()) {
+    return "the map has no surface for most of the scan: the pose may be wrong";
+  }
+  if (failure == ScanLineFailure::too_few_lines) {
+    return "the scan lines are too few to bear each other out: their own pattern may hold the pose";
+  }
+  if (failure == ScanLineFailure::single_layer && !keepsLevel(locked)) {
+    return "the scan is a single layer: height, roll and pitch may be wrong";
+  }
+  return nullptr;
+}
+
+}  // namespace pcl_floam
