@@ -69,7 +69,7 @@ std::vector<FirstLook> looksAlong(const std::vector<Eigen::Vector3d>& open, cons
 }  // namespace
 
 FirstMotionSearch::FirstMotionSearch(const Sweep& first, const Sweep& second, const TrackSettings& settings)
-    : settings_(settings)
+    : tracks_(static_cast<std::size_t>(settings.threads), Track(settings))
 {
   constexpr double kFar = 2.0;  // m
   constexpr int kFarRounds = 5;
@@ -91,12 +91,10 @@ std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<Firs
 {
   std::vector<RegistrationReport> reports(looks.size());
   std::vector<double> evidence(looks.size());
-  const auto parts = std::min(looks.size(), static_cast<std::size_t>(settings_.threads));
-  eachSideBySide(settings_.threads, parts, [&](std::size_t part) {
-    Track track(settings_);  // its memory serves one look after the other
-    for (std::size_t i = part; i < looks.size(); i += parts) {
-      reports[i] = track.findMotion(first_, second_, looks[i]).report;
-      evidence[i] = track.evidence();
+  eachSideBySide(static_cast<int>(tracks_.size()), tracks_.size(), [&](std::size_t part) {
+    for (std::size_t i = part; i < looks.size(); i += tracks_.size()) {
+      reports[i] = tracks_[part].findMotion(first_, second_, looks[i]).report;
+      evidence[i] = tracks_[part].evidence();
     }
   });
   for (std::size_t i = 0; i < looks.size(); ++i) {
