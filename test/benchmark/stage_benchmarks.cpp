@@ -143,7 +143,7 @@ void registerRegistrationStages(const std::string& name, const SharedInput& inpu
   const auto problem = std::make_shared<RegistrationProblem>(
       RegistrationProblem{*target, input->parameters.registration, input->world_T_scan.translation, 1});
   auto links = std::make_shared<Correspondences>();
-  const SweepTrajectory trajectory({input->world_T_scan.rotation, Eigen::Vector3d::Zero()}, input->twist, 0.5);
+  const SweepTrajectory trajectory(SE3(input->world_T_scan.rotation, Eigen::Vector3d::Zero()), input->twist, 0.5);
   const std::vector<double> edge_weights(input->features.edges.size(), 1.0);
   const std::vector<double> plane_weights(input->features.planes.size(), 1.0);
   findCorrespondences(*problem, input->features, edge_weights, plane_weights, trajectory, 1.0, 1, *links);

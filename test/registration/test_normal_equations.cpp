@@ -60,7 +60,7 @@ SweepTrajectory perturbed(const SweepTrajectory& trajectory, const Vector6& pose
   const SE3 start = exp(pose_step + before * twist_step) * trajectory.pose() * exp(before * trajectory.twist());
   const SE3 end = exp(pose_step + after * twist_step) * trajectory.pose() * exp(after * trajectory.twist());
   const Vector6 twist = log(start.inverse() * end);
-  return {start * exp(-before * twist), twist, -before};
+  return SweepTrajectory(start * exp(-before * twist), twist, -before);
 }
 
 class NormalEquationsTest : public testing::Test {
