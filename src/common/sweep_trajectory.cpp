@@ -2,7 +2,7 @@
 
 #include "common/multi_version.h"
 
-#include <cmath>
+#include <algorithm>
 
 namespace pcl_floam {
 
@@ -60,13 +60,15 @@ void addOrders(int orders, const Motion motion, SweepTrajectory::Batch& points, 
   }
 }
 
-/// Whose rest is nothing, as part of the range: of a turn by so many radians.
-int ordersOf(double turn)
+/// Whose rest is nothing, as part of the range, or of a metre if that is less.
+/// \param turn  rad, from the reference instant to the farther end of the sweep
+/// \param shift m, alike
+int ordersOf(double turn, double shift)
 {
   constexpr double kNothing = 1e-7;
-  constexpr int kMost = 20;
+  constexpr int kMost = 100;  // of 30 rad: no lidar turns as far
   int orders = 1;
-  for (double rest = 0.5 * turn * turn; rest > kNothing && orders < kMost; rest *= turn / (orders + 1)) {
+  for (double rest = 0.5 * turn * (turn + shift); rest > kNothing && orders < kMost; rest *= turn / (orders + 1)) {
     ++orders;
   }
   return orders;
@@ -79,7 +81,8 @@ SweepTrajectory::SweepTrajectory(const SE3& target_T_sensor, const Vector6& twis
     : pose_(target_T_sensor), twist_(twist), acceleration_(acceleration), reference_(reference)
 {
   const double longest = std::max(reference, 1.0 - reference);
-  orders_ = ordersOf(longest * (twist.tail<3>().norm() + 0.5 * longest * acceleration.tail<3>().norm()));
+  const Vector6 farthest = longest * (twist.cwiseAbs() + 0.5 * longest * acceleration.cwiseAbs());
+  orders_ = ordersOf(farthest.tail<3>().norm(), farthest.head<3>().norm());
 }
 
 void SweepTrajectory::undistort(Batch& points) const

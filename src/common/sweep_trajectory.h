@@ -33,14 +33,14 @@ public:
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
   [[nodiscard]] const Vector6& twist() const { return twist_; }
-  [[nodiscard]] const Vector6& acceleration() const { return acceleration_; }
 
   /// Time from the reference instant, in sweeps.
   [[nodiscard]] double sinceReference(double time) const { return time - reference_; }
 
   /// The places of \p count points, each \p stride after the one before, in the sensor's frame of the reference
   /// instant.
-  /// \tparam Point has x, y, z in the sensor's frame and the time as a fraction of the sweep in [0, 1]
+  /// \tparam Point has x, y, z in the sensor's frame and the time as a fraction of the sweep; out of [0, 1] it is taken
+  ///               for the nearer end
   template <typename Point>
   void undistorted(const Point* points, std::size_t stride, std::size_t count, Eigen::Vector3d* places) const
   {
@@ -49,7 +49,7 @@ public:
       const std::size_t n = std::min(Batch::kMost, count - begin);
       for (std::size_t i = 0; i < n; ++i) {
         const Point& point = points[(begin + i) * stride];
-        batch.since[i] = sinceReference(static_cast<double>(point.time));
+        batch.since[i] = sinceReference(std::min(std::max(static_cast<double>(point.time), 0.0), 1.0));
         batch.x[i] = static_cast<double>(point.x);
         batch.y[i] = static_cast<double>(point.y);
         batch.z[i] = static_cast<double>(point.z);

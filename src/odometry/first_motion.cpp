@@ -91,8 +91,9 @@ std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<Firs
 {
   std::vector<RegistrationReport> reports(looks.size());
   std::vector<double> evidence(looks.size());
-  eachSideBySide(static_cast<int>(tracks_.size()), tracks_.size(), [&](std::size_t part) {
-    for (std::size_t i = part; i < looks.size(); i += tracks_.size()) {
+  const std::size_t parts = std::min(looks.size(), tracks_.size());
+  eachSideBySide(static_cast<int>(tracks_.size()), parts, [&](std::size_t part) {
+    for (std::size_t i = part; i < looks.size(); i += parts) {
       reports[i] = tracks_[part].findMotion(first_, second_, looks[i]).report;
       evidence[i] = tracks_[part].evidence();
     }
@@ -111,6 +112,9 @@ std::size_t FirstMotionSearch::goOn(std::size_t looks)
   looks = std::min(looks, looks_.size() - looked_);
   lookAt({begin, begin + static_cast<std::ptrdiff_t>(looks)});
   looked_ += looks;
+  if (isDone()) {
+    tracks_.clear();
+  }
   return looks;
 }
 

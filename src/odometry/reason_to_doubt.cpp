@@ -1,5 +1,7 @@
 #include "odometry/reason_to_doubt.h"
 
+#include "registration/surface_registration.h"
+
 #include <algorithm>
 
 namespace pcl_floam {

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace pcl_floam {

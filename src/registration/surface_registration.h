@@ -44,7 +44,7 @@ struct SurfaceProblem {
   bool is_rival = false;
   int max_iterations = 12;
   int threads = 1;
-  struct SurfaceRoom* room = nullptr;  ///< memory that may be used again; nullptr: there is none
+  struct SurfaceRoom* room = nullptr;  ///< memory of the last one, of none that runs; nullptr: there is none
 };
 
 struct SurfaceRegistration {

@@ -49,7 +49,8 @@ std::size_t chunksOf(const SurfaceTerm& term, std::size_t stride)
   return (count + kPointsPerChunk - 1) / kPointsPerChunk;
 }
 
-/// Looks for the surfaces of those points alone that are elsewhere than when they were found before.
+/// Looks for the surfaces of those points alone that are elsewhere than when they were found before: lines of edges,
+/// which are the same for all lasers.
 void findAgain(const SurfaceSearch& target, const Eigen::Vector3d* places, const std::uint32_t* lasers,
                std::size_t count, FoundSurface* found, Surface* surfaces)
 {

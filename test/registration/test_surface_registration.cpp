@@ -1,7 +1,9 @@
 // Registration of points with surfaces: known motions, sweeps, locks, evidence, threads.
 #include "registration/surface_registration.h"
 
+#include "map/edge_lines.h"
 #include "map/voxel_pyramid.h"
+#include "registration/surface_residuals.h"
 #include "support/corner.h"
 #include "support/random_motion.h"
 
@@ -52,7 +54,54 @@ double evidenceIn(Everywhere& map, double off)
   return registerSurfaces(problem).evidence;
 }
 
+/// Of six posts, every 15 cm.
+std::vector<Eigen::Vector3d> edgesOfPosts(double lowest, const Eigen::Vector3d& shift)
+{
+  std::vector<Eigen::Vector3d> edges;
+  for (int post = 0; post < 6; ++post) {
+    for (int i = 0; i < 20; ++i) {
+      edges.push_back(shift + Eigen::Vector3d(2.0 + post % 3, 3.0 * (post / 3) - 1.5, lowest + 0.15 * i));
+    }
+  }
+  return edges;
+}
+
+EdgeLines linesOf(const std::vector<Eigen::Vector3d>& edges)
+{
+  EdgeLines lines;
+  lines.beginKeyframe();
+  lines.insert(edges.data(), std::vector<std::uint32_t>(edges.size(), 0).data(), edges.size());
+  return lines;
+}
+
 }  // namespace
+
+/// Lines of edges are kept while these stay: of one registration, not of the next.
+TEST(SurfaceRegistration, EdgesHoldThePoseAndLeaveNothingToTheNextOne)
+{
+  const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
+  const Corner corner(1);
+  std::vector<ScanPoint> edges;
+  for (const Eigen::Vector3d& p : edgesOfPosts(-1.4, Eigen::Vector3d::Zero())) {
+    edges.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  }
+  SurfaceRoom room;
+  for (const double aside : {0.03, -0.05, 0.0}) {
+    const EdgeLines lines = linesOf(edgesOfPosts(-1.5, {0.0, aside, 0.0}));
+    SurfaceProblem problem = problemOf(points, corner);
+    problem.edges = {&edges, &lines};
+    const SurfaceRegistration alone = registerSurfaces(problem);
+    EXPECT_EQ(alone.report.edge_correspondences, static_cast<int>(edges.size()));
+    EXPECT_NEAR(alone.report.target_T_source.translation.y(), aside, 1e-3);
+    problem.room = &room;
+    for (const int threads : {1, 4}) {
+      problem.threads = threads;
+      const SurfaceRegistration shared = registerSurfaces(problem);
+      EXPECT_EQ(shared.report.target_T_source.matrix(), alone.report.target_T_source.matrix());
+      EXPECT_EQ(shared.posterior, alone.posterior);
+    }
+  }
+}
 
 TEST(SurfaceRegistration, FindsAKnownPose)
 {
