@@ -23,7 +23,7 @@ constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose by what counts as independent residuals.
-constexpr double kSmallStep = 0.6;
+constexpr double kSmallStep = 0.3;
 
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;

@@ -1,6 +1,6 @@
 // The pose estimation in a furnished room.
+#include "registration/furnished_room.h"
 #include "support/random_motion.h"
-#include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/sweep_motion.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
@@ -15,59 +15,10 @@ namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-double distance(const SE3& a, const SE3& b)
-{
-  return (a.translation - b.translation).norm();
-}
-
-double angle(const SE3& a, const SE3& b)
-{
-  return rotationAngle(a.rotation.transpose() * b.rotation);
-}
-
 bool sameBits(const SE3& a, const SE3& b)
 {
   return a.rotation == b.rotation && a.translation == b.translation;
 }
-
-/// A map of the room from some places, and a scan taken from another place, relative to \p origin.
-class FeatureRegistrationTest : public testing::Test {
-protected:
-  void mapRoom(const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(), SearchMethod search = SearchMethod::voxel)
-  {
-    MapParameters parameters;
-    parameters.search = search;
-    map_ = KeyframeVoxelMap(parameters);
-    for (const double x : {-1.0, 0.0, 1.0}) {
-      const SE3 pose(Eigen::Matrix3d::Identity(), Eigen::Vector3d(x, 0.3 * x, 0.2 * x));
-      map_.insert(featuresOf(toCloud(sweepRoom(room_, lidar_, pose))), SE3(pose.rotation, pose.translation + origin));
-    }
-  }
-
-  RegistrationReport run(const SE3& guess, int threads = 1)
-  {
-    RegistrationRun run;
-    run.guess = guess;
-    run.threads = threads;
-    run.factors = factors_;
-    run.translation_epsilon *= precision_;
-    run.rotation_epsilon *= precision_;
-    run.max_iterations = iterations_;
-    return registerFeatures(scan_, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run,
-                            parameters_);
-  }
-
-  Room room_;
-  Lidar lidar_;
-  SE3 truth_ = exp((Vector6() << 0.4, -0.3, 0.1, 0.02, -0.03, 0.15).finished());
-  SE3 guess_ = truth_ * exp((Vector6() << 0.2, -0.1, 0.1, 0.01, 0.02, -0.03).finished());
-  FeatureSet scan_ = featuresOf(toCloud(sweepRoom(room_, lidar_, truth_)));
-  KeyframeVoxelMap map_;
-  RegistrationParameters parameters_;
-  std::vector<PoseFactor::ConstPtr> factors_;
-  int iterations_ = 30;
-  double precision_ = 1.0;  ///< of the convergence, in usual ones
-};
 
 /// The source's origin is at a place, to 0.1 mm.
 class Place : public PoseFactor {
@@ -307,77 +258,6 @@ TEST_F(FeatureRegistrationTest, OneSinglePlaneKeepsTheGuessAlongIt)
   EXPECT_NEAR(report.target_T_source.translation.x(), 1.0, 0.02);  // tilting back moves it a little
   EXPECT_NEAR(report.target_T_source.translation.y(), 2.0, 0.02);
   EXPECT_NEAR(std::atan2(report.target_T_source.rotation(1, 0), report.target_T_source.rotation(0, 0)), 0.3, 1e-3);
-}
-
-/// The sweep of a lidar that moves by \p twist, with the given pose at its middle.
-class MovingSweepTest : public FeatureRegistrationTest {
-protected:
-  void SetUp() override
-  {
-    mapRoom();
-    const auto path = [&](double time) { return truth_ * exp((time - 0.5) * twist_); };
-    scan_ = featuresOf(toCloud(sweepRoom(room_, lidar_, path)));
-    run_.guess = guess_;
-    run_.sweep.reference = 0.5;
-  }
-
-  RegistrationReport runWith(const SweepModel& sweep)
-  {
-    run_.sweep = sweep;
-    run_.sweep.reference = 0.5;
-    return registerFeatures(scan_, {&map_.search(FeatureKind::edge), &map_.search(FeatureKind::plane)}, run_,
-                            parameters_);
-  }
-
-  void expectTruth(const RegistrationReport& report)
-  {
-    EXPECT_EQ(report.termination, Termination::converged);
-    EXPECT_LT(distance(report.target_T_source, truth_), 0.01);
-    EXPECT_LT(angle(report.target_T_source, truth_), 1e-3);
-    EXPECT_LT((report.sweep_twist - twist_).head<3>().norm(), 0.02);
-    EXPECT_LT((report.sweep_twist - twist_).tail<3>().norm(), 3e-3);
-  }
-
-  Vector6 twist_ = (Vector6() << 0.3, -0.2, 0.05, 0.02, 0.03, 0.2).finished();
-  RegistrationRun run_;
-};
-
-TEST_F(MovingSweepTest, KnownMotionIsCompensated)
-{
-  SweepModel sweep;
-  sweep.twist = twist_;
-  expectTruth(runWith(sweep));
-  const RegistrationReport distorted = runWith(SweepModel());
-  EXPECT_GT(distorted.residual_rms, 2.0 * runWith(sweep).residual_rms);
-}
-
-TEST_F(MovingSweepTest, MotionThatFollowsThePoseIsFound)
-{
-  SweepModel sweep;
-  sweep.follows_pose = true;
-  sweep.held_pose = truth_ * exp(-1.25 * twist_);
-  sweep.sweep_per_motion = 0.8;
-  for (const SolverKind solver : {SolverKind::gauss_newton, SolverKind::ceres}) {
-    parameters_.solver = solver;
-    expectTruth(runWith(sweep));
-  }
-}
-
-TEST_F(MovingSweepTest, MotionThatFollowsThePoseFarFromTheOrigin)
-{
-  const Eigen::Vector3d far(1e6, -5e5, 1e3);
-  const SE3 to_far(Eigen::Matrix3d::Identity(), far);
-  SweepModel sweep;
-  sweep.follows_pose = true;
-  sweep.held_pose = truth_ * exp(-1.25 * twist_);
-  sweep.sweep_per_motion = 0.8;
-  const RegistrationReport near = runWith(sweep);
-  mapRoom(far);
-  run_.guess = to_far * guess_;
-  sweep.held_pose = to_far * sweep.held_pose;
-  const RegistrationReport there = runWith(sweep);
-  EXPECT_LT(distance(to_far * near.target_T_source, there.target_T_source), 1e-3);
-  EXPECT_LT((near.sweep_twist - there.sweep_twist).norm(), 1e-3);
 }
 
 }  // namespace

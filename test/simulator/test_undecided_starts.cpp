@@ -1,0 +1,122 @@
+// Starts among cars of about the same speed, of which the first scans do not tell.
+#include "simulator/first_scans.h"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+namespace pcl_floam::simulator {
+
+/// Twelve sweeps do not tell here: that is said, and the next ones tell.
+TEST(UndecidedStarts, AreDoubtfulUntilOneMotionIsLeft)
+{
+  FirstScans scans(optionsOf(Start{23, 0.0, 0.3, "vlp16"}));
+  int undecided = 0;
+  bool is_provisional = false;
+  for (int number = 0; number < kLongest; ++number) {
+    const OdometryReport& report = scans.next();
+    is_provisional = report.provisional;
+    undecided += report.state == TrackingState::doubtful && saysSeveralExplain(report) ? 1 : 0;
+  }
+  EXPECT_GT(undecided, 0);
+  EXPECT_FALSE(is_provisional);
+  EXPECT_LT(scans.motionError(), 0.3);
+  EXPECT_LT(scans.wayError(), 2.0);
+}
+
+/// Of a family on which nothing was chosen.
+SimulationOptions slowlyTold(unsigned seed = 6, double begin = 0.0)
+{
+  SimulationOptions options = optionsOf({seed, begin, 0.0, "vlp16"});
+  options.family = Family::test;
+  options.realism = Realism::real;
+  return options;
+}
+
+/// Rivals are followed for longer than sweeps are kept, and none is chosen meanwhile.
+TEST(UndecidedStarts, AreNotSettledByTheClock)
+{
+  constexpr int kLong = 120;  // scans
+  FirstScans scans(slowlyTold(1, 7.0));
+  int undecided = 0;
+  for (int number = 0; number < kLong; ++number) {
+    const OdometryReport report = scans.next();
+    undecided += saysSeveralExplain(report) ? 1 : 0;
+    EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.motionError() < 0.3) << number;
+  }
+  EXPECT_GT(undecided, 100) << "more sweeps than are kept";
+}
+
+/// Once one is left the poses before are corrected.
+TEST(UndecidedStarts, AreSettledWhenOneMotionIsLeft)
+{
+  constexpr int kLong = 175;  // scans
+  FirstScans scans(slowlyTold());
+  int undecided = 0;
+  OdometryReport report;
+  for (int number = 0; number < kLong; ++number) {
+    report = scans.next();
+    undecided += saysSeveralExplain(report) ? 1 : 0;
+    EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.motionError() < 0.3) << number;
+  }
+  EXPECT_GT(undecided, 50);
+  EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
+  EXPECT_LT(scans.greatestWayError(kFirst), 1.0);
+}
+
+/// The likeliest stays then.
+TEST(UndecidedStarts, AreSettledByAPoseThatIsGiven)
+{
+  Simulation simulation(slowlyTold());
+  Odometry<PointXYZIRT> odometry;
+  for (std::size_t number = 0; number < 20; ++number) {
+    odometry.track(simulation.sweep(number).cloud);
+  }
+  EXPECT_TRUE(saysSeveralExplain(odometry.report()));
+  odometry.setPose(odometry.pose());
+  EXPECT_FALSE(saysSeveralExplain(odometry.track(simulation.sweep(20).cloud)));
+}
+
+/// Nothing tells two apart that have come to move alike, and nothing is to be told.
+TEST(UndecidedStarts, EndWhereRivalsMoveAlike)
+{
+  SimulationOptions options;
+  options.world = "open-road";
+  options.sensor = "vlp16";
+  options.seed = 5;
+  options.family = Family::test;
+  FirstScans scans(options);
+  int undecided = 0;
+  OdometryReport report;
+  for (int number = 0; number < 50; ++number) {
+    report = scans.next();
+    undecided += saysSeveralExplain(report) ? 1 : 0;
+  }
+  EXPECT_GT(undecided, 0) << "no rivals here";
+  EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
+  EXPECT_LT(scans.greatestWayError(50), 0.1);
+}
+
+/// Scans in which nothing is where it was fit none of the rivals; these are followed where it goes on.
+TEST(UndecidedStarts, OutliveScansThatDoNotFit)
+{
+  Simulation simulation(slowlyTold());
+  Odometry<PointXYZIRT> odometry;
+  constexpr float kAway = 60.0F;  // m, up
+  int unfit = 0;
+  for (std::size_t number = 0; number < 40; ++number) {
+    Sweep sweep = simulation.sweep(number);
+    if (number >= 20 && number < 28) {
+      for (PointXYZIRT& point : sweep.cloud) {
+        point.z += kAway;
+      }
+    }
+    const OdometryReport& report = odometry.track(sweep.cloud);
+    unfit += report.state == TrackingState::predicted ? 1 : 0;
+    EXPECT_TRUE(number < 20 || report.state != TrackingState::tracked) << number;
+  }
+  EXPECT_GE(unfit, 6);
+  EXPECT_TRUE(saysSeveralExplain(odometry.report())) << odometry.report().reason;
+}
+
+}  // namespace pcl_floam::simulator
