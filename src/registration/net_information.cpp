@@ -1,5 +1,7 @@
 #include "registration/net_information.h"
 
+#include "registration/information_analysis.h"
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
@@ -11,7 +13,6 @@ namespace pcl_floam {
 namespace {
 
 using Square6 = Eigen::Matrix<double, 6, 6>;
-using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 
 /// What residuals tell that tell of one direction alone, as a part of them: less is nothing.
 constexpr double kNothing = 1e-6;
