@@ -39,16 +39,13 @@ float medianSpacing(const LinePoints& line, std::vector<float>& sample)
 
 LineNeighborhood neighborhoodIn(const LinePoints& line, int wanted, std::vector<float>& scratch)
 {
-  const auto full_circle = static_cast<float>(2.0 * M_PI);
   LineNeighborhood neighborhood;
   neighborhood.each_side = wanted;
-  if (static_cast<float>(line.size()) * kSparse > full_circle) {
-    return neighborhood;  // mostly so, and no need to look
-  }
-  const float spacing = medianSpacing(line, scratch);
-  if (spacing > kSparse) {
+  neighborhood.spacing = medianSpacing(line, scratch);
+  if (neighborhood.spacing > kSparse) {
     neighborhood.is_sparse = true;
-    neighborhood.each_side = std::clamp(static_cast<int>(kReach / spacing), std::min(kFewestNeighbors, wanted), wanted);
+    neighborhood.each_side =
+        std::clamp(static_cast<int>(kReach / neighborhood.spacing), std::min(kFewestNeighbors, wanted), wanted);
   }
   return neighborhood;
 }

@@ -13,6 +13,7 @@ struct LineNeighborhood {
   int each_side = 5;
   /// The points are far and unevenly apart, as where most returns are missing.
   bool is_sparse = false;
+  float spacing = 0.0F;  ///< median angle between neighbours, seen from the sensor, rad
 };
 
 /// Sparse lines have fewer neighbours: those asked for would be spread over tens of degrees, where no surface is even.

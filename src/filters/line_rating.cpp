@@ -57,6 +57,10 @@ bool LineRating::rate(const CloudView& cloud, const ScanLines& lines, std::size_
   flatness.resize(sigma.size());
   sortByUse(sigma.size(), sigma.data(), unfit_.data(), edge_threshold, parameters.plane_threshold, sharpness.data(),
             flatness.data());
+  wide.clear();
+  if (parameters.smoothness == SmoothnessKind::vector_sum) {
+    wide.rate(points, each_side, neighborhood.spacing, sigma, unfit_, sharpness);
+  }
   return true;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "filters/line_points.h"
+#include "filters/wide_smoothness.h"
 
 #include <pcl_floam/common/cloud_view.h>
 #include <pcl_floam/filters/feature_parameters.h>
@@ -23,6 +24,7 @@ struct LineRating {
   std::vector<float> sigma;      ///< smoothness (Eq. 1), m
   std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
   std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
+  WideSmoothness wide;
   int each_side = 0;             ///< neighbours of a point in this line
   float edge_threshold = 0.0F;   ///< of this line's edges: above its noise
 
