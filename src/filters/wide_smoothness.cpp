@@ -14,9 +14,9 @@ namespace {
 constexpr float kWide = 0.1F;
 /// Part of a side's neighbours that the middle is averaged over on each side, one in so many.
 constexpr int kMiddle = 5;
-/// An edge needs a smoothness of so many times what its neighbourhood has by noise; their mean, where the line's own
-/// threshold has five times the median.
-constexpr double kNoiseRatio = 4.0;
+/// An edge needs a smoothness of so many times what its neighbourhood has, as by noise. With four times, a smooth
+/// corridor's noise has some edges.
+constexpr double kNoiseRatio = 5.0;
 
 /// Variance of the smoothness by noise, in those of a point, over \p reach neighbours on each side.
 double noiseOver(int reach, int middle)
@@ -67,8 +67,8 @@ void WideSmoothness::sum(const LinePoints& line, const std::vector<float>& sigma
   }
 }
 
-/// The part across the line: along it, it is long where returns are missing. As it would be over the line's own neighbours
-/// with the same part of noise in it; 0 if it is no edge.
+/// The part across the line: along it, it is long where returns are missing. As it would be over the line's own
+/// neighbours with the same part of noise in it; 0 if it is no edge.
 float WideSmoothness::sharpnessAt(int n, int reach, int each_side) const
 {
   constexpr double kSmallestSquare = 1e-12;  // m^2: all at one place
