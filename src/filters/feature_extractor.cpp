@@ -115,8 +115,10 @@ private:
     if (!(sharpness(n) > 0.0F)) {  // in the neighbourhood of one taken since
       return false;
     }
-    const bool is_mean_of_norms = parameters_.smoothness != SmoothnessKind::vector_sum;
-    if (is_mean_of_norms || line_.wide.reachOf(n) > 0) {  // a mean of norms is 1 on a line as well
+    if (parameters_.smoothness != SmoothnessKind::vector_sum) {  // a mean of norms is 1 on a line as well
+      return true;
+    }
+    if (line_.wide.isEdge(n)) {
       return true;
     }
     const float distance = meanNeighborDistance(line_.points, n, neighbors_);
@@ -154,8 +156,8 @@ private:
     feature.z = edge.position.z();
     feature.time = timeOf(edge.middle());
     features_.edges.push_back(feature);
-    const int beyond = std::max(0, line_.wide.reachOf(sharpest) - neighbors_);
-    takeNeighborhood(std::min(sharpest - beyond, edge.first), std::max(sharpest + beyond, edge.last));
+    takeNeighborhood(std::min(sharpest, edge.first), std::max(sharpest, edge.last));
+    line_.wide.forgetAround(line_.points, sharpest, line_.sharpness);
   }
 
   /// What is part of an edge's neighbourhood is neither another edge nor a plane.

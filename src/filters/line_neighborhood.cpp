@@ -28,8 +28,9 @@ float medianSpacing(const LinePoints& line, std::vector<float>& sample)
   for (std::size_t n = 0; n < steps; n += stride) {
     const float depth = line.range[n + 1] - line.range[n];
     const float ranges = line.range[n + 1] * line.range[n];
-    if (ranges > 0.0F) {
-      sample.push_back((line.squared_step[n] - depth * depth) / ranges);
+    const float squared = (line.squared_step[n] - depth * depth) / ranges;
+    if (std::isfinite(squared)) {
+      sample.push_back(squared);
     }
   }
   return std::sqrt(std::max(0.0F, medianOf(sample)));
@@ -42,7 +43,8 @@ LineNeighborhood neighborhoodIn(const LinePoints& line, int wanted, std::vector<
   LineNeighborhood neighborhood;
   neighborhood.each_side = wanted;
   neighborhood.spacing = medianSpacing(line, scratch);
-  if (neighborhood.spacing > kSparse) {
+  const auto full_circle = static_cast<float>(2.0 * M_PI);
+  if (static_cast<float>(line.size()) * kSparse <= full_circle && neighborhood.spacing > kSparse) {
     neighborhood.is_sparse = true;
     neighborhood.each_side =
         std::clamp(static_cast<int>(kReach / neighborhood.spacing), std::min(kFewestNeighbors, wanted), wanted);

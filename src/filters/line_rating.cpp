@@ -59,7 +59,7 @@ bool LineRating::rate(const CloudView& cloud, const ScanLines& lines, std::size_
             flatness.data());
   wide.clear();
   if (parameters.smoothness == SmoothnessKind::vector_sum) {
-    wide.rate(points, each_side, neighborhood.spacing, sigma, unfit_, sharpness);
+    wide.rate(points, {each_side, neighborhood.spacing, parameters.edge_threshold}, sigma, unfit_, sharpness);
   }
   return true;
 }

@@ -22,9 +22,9 @@ constexpr float kNeverFlat = std::numeric_limits<float>::max();
 struct LineRating {
   LinePoints points;
   std::vector<float> sigma;      ///< smoothness (Eq. 1), m
-  std::vector<float> sharpness;  ///< sigma of the points that may be edges, 0 elsewhere
+  std::vector<float> sharpness;  ///< of the points that may be edges, as a smoothness in m; 0 elsewhere
   std::vector<float> flatness;   ///< sigma of the points that may be planes, kNeverFlat elsewhere
-  WideSmoothness wide;
+  WideSmoothness wide;           ///< what near points are worth as edges beyond that
   int each_side = 0;             ///< neighbours of a point in this line
   float edge_threshold = 0.0F;   ///< of this line's edges: above its noise
 

@@ -5,10 +5,18 @@
 #include "filters/line_points.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
+
+/// Of whose edges is asked.
+struct WideNeighborhood {
+  int each_side = 5;            ///< neighbours of a point that its smoothness (Eq. 1) was computed from
+  float spacing = 0.0F;         ///< of the line's points, rad
+  float edge_threshold = 0.0F;  ///< sharpness of an edge, m
+};
 
 /// Near the sensor a few neighbours are closer to each other than their noise, and a door's frame a metre away is lost
 /// in it. Over as many as it takes to go some way along the surface, noise is averaged out. A departure from the paper,
@@ -17,21 +25,29 @@ class WideSmoothness {
 public:
   void clear() { reach_.clear(); }
 
-  /// Raises the sharpness of points that are edges over a wide neighbourhood.
-  /// \param each_side neighbours of a point that its smoothness \p sigma (Eq. 1) was computed from
-  /// \param spacing   of the line's points, rad
-  void rate(const LinePoints& line, int each_side, float spacing, const std::vector<float>& sigma,
+  /// Raises the sharpness of points that are edges over a wide neighbourhood, none of them behind a depth step.
+  /// \param sigma the smoothness of the line's points (Eq. 1)
+  void rate(const LinePoints& line, const WideNeighborhood& neighborhood, const std::vector<float>& sigma,
             const std::vector<std::int32_t>& unfit, std::vector<float>& sharpness);
 
-  /// Neighbours on each side over which a point is an edge; 0: it is none, or as the line's others are.
-  [[nodiscard]] int reachOf(int n) const { return reach_.empty() ? 0 : reach_[static_cast<std::size_t>(n)]; }
+  /// Whether a point is an edge over a wide neighbourhood.
+  [[nodiscard]] bool isEdge(int n) const { return !reach_.empty() && reach_[static_cast<std::size_t>(n)] > 0; }
+
+  /// Takes away the sharpness of the wide neighbourhoods that have an edge in common with that at \p n.
+  void forgetAround(const LinePoints& line, int n, std::vector<float>& sharpness) const;
 
 private:
   void sum(const LinePoints& line, const std::vector<float>& sigma);
-  [[nodiscard]] float sharpnessAt(int n, int reach, int each_side) const;
+  void findSteps(const LinePoints& line);
+  [[nodiscard]] int reachAt(const LinePoints& line, int n) const;
+  [[nodiscard]] bool isHidden(int n, int reach) const;
+  [[nodiscard]] float sharpnessAt(int n, int reach) const;
 
+  WideNeighborhood neighborhood_;
   std::vector<std::array<double, 4>> sums_;  ///< of coordinates and sigma, of all points before
-  std::vector<int> reach_;
+  std::vector<int> rise_;                    ///< first point behind the latest step away from the sensor
+  std::vector<int> fall_;                    ///< last point behind the next step towards the sensor
+  std::vector<int> reach_;                   ///< neighbours on each side over which a point is an edge; 0: it is none
 };
 
 }  // namespace pcl_floam

@@ -1,13 +1,17 @@
 // Edges that are lost in the noise of a few neighbours, and found over many.
 #include "filters/wide_smoothness.h"
 
+#include "filters/line_neighborhood.h"
 #include "filters/smoothness.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -56,20 +60,29 @@ struct Rated {
   WideSmoothness wide;
 };
 
-Rated ratedOf(const LinePoints& line)
+constexpr float kAnySharpness = 0.0F;
+
+/// As the feature extraction rates a line.
+Rated ratedOf(const LinePoints& line, float least = kAnySharpness)
 {
   Rated rated;
+  std::vector<float> scratch;
   std::vector<float> sigma;
-  computeSmoothness(line, kEachSide, SmoothnessKind::vector_sum, sigma);
+  const LineNeighborhood neighborhood = neighborhoodIn(line, kEachSide, scratch);
+  if (neighborhood.is_sparse) {
+    computeSmoothnessAcross(line, neighborhood.each_side, sigma);
+  } else {
+    computeSmoothness(line, neighborhood.each_side, SmoothnessKind::vector_sum, sigma);
+  }
   const std::vector<std::int32_t> unfit(sigma.size(), 0);
   rated.sharpness.assign(sigma.size(), 0.0F);
-  rated.wide.rate(line, kEachSide, static_cast<float>(kSpacing), sigma, unfit, rated.sharpness);
+  rated.wide.rate(line, {neighborhood.each_side, neighborhood.spacing, least}, sigma, unfit, rated.sharpness);
   return rated;
 }
 
-std::size_t edgesIn(const LinePoints& line)
+std::size_t edgesIn(const LinePoints& line, float least = kAnySharpness)
 {
-  const Rated rated = ratedOf(line);
+  const Rated rated = ratedOf(line, least);
   return static_cast<std::size_t>(
       std::count_if(rated.sharpness.begin(), rated.sharpness.end(), [](float s) { return s > 0.0F; }));
 }
@@ -83,14 +96,14 @@ bool isNearAJamb(float along)
 
 TEST(WideSmoothness, FindsADoorsJambsAMetreAwayThroughNoise)
 {
+  constexpr float kLeast = 0.1F;  // m: the default
   constexpr int kScans = 50;
-  constexpr double kNoise = 0.02;  // m
   std::mt19937 random(1);
   int both = 0;
   std::size_t elsewhere = 0;
   for (int scan = 0; scan < kScans; ++scan) {
-    const LinePoints line = lineOf(behindADoor, kNoise, 0.0, random);
-    const Rated rated = ratedOf(line);
+    const LinePoints line = lineOf(behindADoor, 0.02, 0.0, random);
+    const Rated rated = ratedOf(line, kLeast);
     bool left = false;
     bool right = false;
     for (std::size_t n = 0; n < rated.sharpness.size(); ++n) {
@@ -98,13 +111,12 @@ TEST(WideSmoothness, FindsADoorsJambsAMetreAwayThroughNoise)
         left = left || (isNearAJamb(line.x[n]) && line.x[n] < 0.0F);
         right = right || (isNearAJamb(line.x[n]) && line.x[n] > 0.0F);
         elsewhere += isNearAJamb(line.x[n]) ? 0 : 1;
-        EXPECT_GT(rated.wide.reachOf(static_cast<int>(n)), kEachSide);
       }
     }
     both += left && right ? 1 : 0;
   }
   EXPECT_GT(both, 9 * kScans / 10);
-  EXPECT_LT(elsewhere, static_cast<std::size_t>(kScans));  // of some 250 neighbourhoods a scan
+  EXPECT_LT(elsewhere, static_cast<std::size_t>(kScans / 10));  // of some hundred neighbourhoods a scan
 }
 
 TEST(WideSmoothness, FindsNothingInAWallsNoise)
@@ -113,13 +125,10 @@ TEST(WideSmoothness, FindsNothingInAWallsNoise)
   for (const double sd : {0.002, 0.01, 0.02, 0.05}) {
     for (const double distance : {0.6, 1.0, 2.0, 4.0}) {
       std::size_t edges = 0;
-      std::size_t points = 0;
-      for (int scan = 0; scan < 20; ++scan) {
-        const LinePoints line = lineOf(wallAt(distance), sd, 0.0, random);
-        edges += edgesIn(line);
-        points += line.x.size();
+      for (int scan = 0; scan < 40; ++scan) {
+        edges += edgesIn(lineOf(wallAt(distance), sd, 0.0, random));
       }
-      EXPECT_LT(1000 * edges, 2 * points) << sd << " at " << distance;
+      EXPECT_LE(edges, 2U) << sd << " at " << distance;  // of some 24000 points
     }
   }
 }
@@ -130,42 +139,101 @@ TEST(WideSmoothness, FindsNothingWhereReturnsOfAWallAreMissing)
   std::mt19937 random(3);
   for (const double missing : {0.3, 0.7}) {
     std::size_t edges = 0;
-    std::size_t points = 0;
-    for (int scan = 0; scan < 20; ++scan) {
-      const LinePoints line = lineOf(wallAt(1.0), 0.01, missing, random);
-      edges += edgesIn(line);
-      points += line.x.size();
+    for (int scan = 0; scan < 40; ++scan) {
+      edges += edgesIn(lineOf(wallAt(1.0), 0.01, missing, random));
     }
-    EXPECT_LT(1000 * edges, 2 * points) << missing;
+    EXPECT_LE(edges, 2U) << missing;
   }
+}
+
+/// What is hidden behind a thing ends where the sensor stops to see it.
+TEST(WideSmoothness, FindsNothingBehindADepthStep)
+{
+  std::mt19937 random(7);
+  for (const double behind : {0.15, 0.2, 0.3, 0.6}) {
+    std::size_t before = 0;
+    const auto boxBeforeAWall = [behind](double angle) { return (angle < 0.2 ? 1.0 : 1.0 + behind) / std::cos(angle); };
+    for (int scan = 0; scan < 20; ++scan) {
+      const LinePoints line = lineOf(boxBeforeAWall, 0.005, 0.0, random);
+      const Rated rated = ratedOf(line);
+      for (std::size_t n = 0; n < rated.sharpness.size(); ++n) {
+        const bool is_behind = static_cast<double>(line.y[n]) > 1.0 + 0.5 * behind;
+        EXPECT_TRUE(!is_behind || rated.sharpness[n] == 0.0F) << behind << ": " << n;
+        before += !is_behind && rated.sharpness[n] > 0.0F ? 1 : 0;
+      }
+    }
+    EXPECT_TRUE(before > 0 || behind > 0.5) << behind;  // the few neighbours see a deep one themselves
+  }
+}
+
+TEST(WideSmoothness, TakesNothingThatIsLessSharpThanAsked)
+{
+  std::mt19937 random(6);
+  const LinePoints line = lineOf(behindADoor, 0.002, 0.0, random);
+  EXPECT_GT(edgesIn(line), 0U);
+  EXPECT_EQ(edgesIn(line, 10.0F), 0U);
 }
 
 TEST(WideSmoothness, LeavesWhatIsFarToItsFewNeighbours)
 {
   std::mt19937 random(4);
   const LinePoints line = lineOf([](double angle) { return 10.0 * behindADoor(angle); }, 0.0, 0.0, random);
-  const Rated rated = ratedOf(line);
-  for (std::size_t n = 0; n < rated.sharpness.size(); ++n) {
-    EXPECT_EQ(rated.wide.reachOf(static_cast<int>(n)), 0);
-    EXPECT_EQ(rated.sharpness[n], 0.0F);
+  EXPECT_EQ(edgesIn(line), 0U);
+}
+
+TEST(WideSmoothness, OfAnEdgeThatIsTakenNothingIsLeft)
+{
+  constexpr std::ptrdiff_t kBeside = 20;  // points: fewer than the neighbourhood has on each side
+  std::mt19937 random(8);
+  const LinePoints line = lineOf(behindADoor, 0.005, 0.0, random);
+  Rated rated = ratedOf(line);
+  const auto begin = rated.sharpness.begin();
+  const auto taken = std::max_element(begin, rated.sharpness.end()) - begin;
+  const auto besideIt = [&] {
+    return std::count_if(begin + taken - kBeside, begin + taken + kBeside, [](float s) { return s > 0.0F; });
+  };
+  EXPECT_GT(besideIt(), 1);
+  rated.wide.forgetAround(line, static_cast<int>(taken), rated.sharpness);
+  EXPECT_EQ(besideIt(), 0);
+  EXPECT_GT(*std::max_element(rated.sharpness.begin(), rated.sharpness.end()), 0.0F);  // the other jamb
+}
+
+TEST(WideSmoothness, KnowsNothingOfLinesThatAreTooShortOrWithoutSpacing)
+{
+  std::mt19937 random(5);
+  const LinePoints door = lineOf(behindADoor, 0.005, 0.0, random);
+  WideSmoothness wide;
+  std::vector<float> sigma;
+  computeSmoothness(door, kEachSide, SmoothnessKind::vector_sum, sigma);
+  std::vector<float> sharpness(sigma.size(), 0.0F);
+  for (const float spacing : {0.0F, std::nanf("")}) {
+    wide.rate(door, {kEachSide, spacing, kAnySharpness}, sigma, std::vector<std::int32_t>(sigma.size(), 0), sharpness);
+    EXPECT_EQ(*std::max_element(sharpness.begin(), sharpness.end()), 0.0F);
+  }
+  for (std::size_t size = 0; size <= 2 * kEachSide + 3; ++size) {  // none has a neighbourhood that is wide
+    LinePoints line = door;
+    line.x.resize(size);
+    line.y.resize(size);
+    line.z.resize(size);
+    line.measure();
+    EXPECT_EQ(edgesIn(line), 0U) << size;
   }
 }
 
-TEST(WideSmoothness, KnowsNothingOfLinesThatAreTooShortOrHaveNoSpacing)
+/// A point that is said to be beyond all bounds takes the digits of none.
+TEST(WideSmoothness, IsTheSameWhateverIsFarAway)
 {
-  std::mt19937 random(5);
-  LinePoints line = lineOf(wallAt(1.0), 0.02, 0.0, random);
-  std::vector<float> sigma;
-  computeSmoothness(line, kEachSide, SmoothnessKind::vector_sum, sigma);
-  std::vector<float> sharpness(sigma.size(), 0.0F);
-  WideSmoothness wide;
-  for (const float spacing : {0.0F, std::nanf("")}) {
-    wide.rate(line, kEachSide, spacing, sigma, std::vector<std::int32_t>(sigma.size(), 0), sharpness);
-    EXPECT_EQ(wide.reachOf(50), 0);
+  std::mt19937 random(9);
+  LinePoints line = lineOf(behindADoor, 0.005, 0.0, random);
+  const std::vector<float> expected = ratedOf(line).sharpness;
+  for (const float far : {1e13F, 1e30F, std::numeric_limits<float>::infinity()}) {
+    line.x[2] = far;
+    line.measure();
+    const std::vector<float> found = ratedOf(line).sharpness;
+    for (std::size_t n = 60; n < found.size(); ++n) {
+      EXPECT_NEAR(found[n], expected[n], 1e-6F) << far << ": " << n;
+    }
   }
-  line = LinePoints();
-  wide.rate(line, kEachSide, static_cast<float>(kSpacing), {}, {}, sharpness);
-  EXPECT_EQ(wide.reachOf(0), 0);
 }
 
 }  // namespace
