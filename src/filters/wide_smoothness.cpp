@@ -119,7 +119,7 @@ float WideSmoothness::sharpnessAt(int n, int reach) const
 {
   constexpr double kSmallestSquare = 1e-12;  // m^2: all at one place
   const auto sumOf = [this](int first, int last) {
-    return Eigen::Array4d(Eigen::Array4d::Map(sums_[static_cast<std::size_t>(last + 1)].data()) -
+    return Eigen::Array4d(Eigen::Array4d::Map(sums_[static_cast<std::size_t>(last) + 1].data()) -
                           Eigen::Array4d::Map(sums_[static_cast<std::size_t>(first)].data()));
   };
   const int middle = reach / kMiddle;
