@@ -10,8 +10,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// A depth step hides surface when it is larger than this part of the range.
-constexpr float kDepthStep = 0.05F;
 /// Points further apart than this, in rad, have no surface between them that one could hide from the other.
 constexpr float kAdjacent = 0.05F;
 /// Spacing to both neighbours, as a part of the range, from which incidence is called grazing (LOAM's value).

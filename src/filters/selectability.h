@@ -12,6 +12,9 @@
 
 namespace pcl_floam {
 
+/// A depth step hides surface when it is larger than this part of the range.
+constexpr float kDepthStep = 0.05F;
+
 /// One number a point, 1 where it can't be a feature: out of range, beside a nearer surface (its neighbourhood changes
 /// with the viewpoint), or on a surface seen almost edge on. As wide as the coordinates, for the loops' sake.
 void markUnfit(const LinePoints& line, const FeatureParameters& parameters, const LineNeighborhood& neighborhood,

@@ -1,5 +1,7 @@
 #include "filters/wide_smoothness.h"
 
+#include "filters/selectability.h"
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -15,8 +17,6 @@ constexpr float kWide = 0.1F;
 constexpr int kMiddle = 5;
 /// An edge needs a smoothness of so many times what its neighbourhood has, which mostly is noise.
 constexpr double kNoiseRatio = 6.0;
-/// A depth step hides surface when it is larger than this part of the range, as for all features.
-constexpr float kDepthStep = 0.05F;
 /// m; sums of what is farther would lose the digits of what is near.
 constexpr float kFarthest = 1e4F;
 
