@@ -37,29 +37,50 @@ void WideSmoothness::rate(const LinePoints& line, const WideNeighborhood& neighb
   const int each_side = neighborhood.each_side;
   const float farthest = kWide / (static_cast<float>(each_side + 1) * neighborhood.spacing);
   const auto isRated = [&](std::size_t k) { return unfit[k] == 0 && line.range[k] > 0.0F && line.range[k] < farthest; };
-  std::size_t first = 0;
-  while (first < sigma.size() && !isRated(first)) {
+  int first = 0;
+  int last = line.size() - 1;
+  while (first <= last && !isRated(static_cast<std::size_t>(first))) {
     ++first;
   }
-  if (!(neighborhood.spacing > 0.0F) || first == sigma.size()) {
+  while (first <= last && !isRated(static_cast<std::size_t>(last))) {
+    --last;
+  }
+  if (!(neighborhood.spacing > 0.0F) || first > last) {
     return;
   }
   reach_.resize(sigma.size(), 0);
   sum(line, sigma);
-  findSteps(line);
-  for (int n = std::max(each_side, static_cast<int>(first)); n < line.size() - each_side; ++n) {
+  Window window;
+  last = std::min(last, line.size() - 1 - each_side);
+  for (int n = std::max(each_side, first); n <= last; ++n) {
     const auto k = static_cast<std::size_t>(n);
     if (!isRated(k)) {
       continue;
     }
     const int reach = reachAt(line, n);
-    const float sharp = reach > each_side && !isHidden(n, reach) ? sharpnessAt(n, reach) : 0.0F;
-    if (sharp > std::max(sigma[k], neighborhood.edge_threshold)) {
+    if (reach != window.reach) {
+      window = windowOf(reach);
+    }
+    const float sharp = reach > each_side ? sharpnessAt(n, window) : 0.0F;
+    if (sharp > std::max(sigma[k], neighborhood.edge_threshold) && !isHidden(line, n, reach)) {
       reach_[k] = reach;
       sharpness[k] = std::max(sharpness[k], sharp);
     }
-    n += reach / kMiddle;  // the next ones have nearly the same neighbourhood
+    n += window.middle;  // the next ones have nearly the same neighbourhood
   }
+}
+
+WideSmoothness::Window WideSmoothness::windowOf(int reach) const
+{
+  Window window;
+  window.reach = reach;
+  window.middle = reach / kMiddle;
+  if (reach > 0) {
+    window.per_side = 1.0 / reach;
+    window.per_middle = 1.0 / (2 * window.middle + 1);
+    window.noise_ratio = noiseOver(neighborhood_.each_side, 0) / noiseOver(reach, window.middle);
+  }
+  return window;
 }
 
 int WideSmoothness::reachAt(const LinePoints& line, int n) const
@@ -71,69 +92,55 @@ int WideSmoothness::reachAt(const LinePoints& line, int n) const
 void WideSmoothness::sum(const LinePoints& line, const std::vector<float>& sigma)
 {
   sums_.resize(sigma.size() + 1);
-  std::array<double, 4> sum{};
-  sums_[0] = sum;
+  Eigen::Array4d sum = Eigen::Array4d::Zero();
+  Eigen::Array4d::Map(sums_[0].data()) = sum;
   for (std::size_t n = 0; n < sigma.size(); ++n) {
     if (line.range[n] < kFarthest) {
-      sum[0] += static_cast<double>(line.x[n]);
-      sum[1] += static_cast<double>(line.y[n]);
-      sum[2] += static_cast<double>(line.z[n]);
-      sum[3] += sigma[n] < kFarthest ? static_cast<double>(sigma[n]) : 0.0;
+      sum += Eigen::Array4f(line.x[n], line.y[n], line.z[n], sigma[n] < kFarthest ? sigma[n] : 0.0F).cast<double>();
     }
-    sums_[n + 1] = sum;
-  }
-}
-
-void WideSmoothness::findSteps(const LinePoints& line)
-{
-  const int size = line.size();
-  const auto isFarther = [&](int a, int b) {  // a than its neighbour b
-    const float near = line.range[static_cast<std::size_t>(b)];
-    const float step = line.range[static_cast<std::size_t>(a)] - near;
-    return step > std::max(neighborhood_.edge_threshold, kDepthStep * near);
-  };
-  rise_.resize(static_cast<std::size_t>(size));
-  fall_.resize(static_cast<std::size_t>(size));
-  int rise = -size;
-  for (int n = 0; n < size; ++n) {
-    rise = n > 0 && isFarther(n, n - 1) ? n : rise;
-    rise_[static_cast<std::size_t>(n)] = rise;
-  }
-  int fall = 2 * size;
-  for (int n = size - 1; n >= 0; --n) {
-    fall = n + 1 < size && isFarther(n, n + 1) ? n : fall;
-    fall_[static_cast<std::size_t>(n)] = fall;
+    Eigen::Array4d::Map(sums_[n + 1].data()) = sum;
   }
 }
 
 /// Whether a point is so near behind a depth step that the step would be its edge, which moves with the sensor.
-bool WideSmoothness::isHidden(int n, int reach) const
+bool WideSmoothness::isHidden(const LinePoints& line, int n, int reach) const
 {
-  const auto k = static_cast<std::size_t>(n);
-  return n - rise_[k] < reach || fall_[k] - n < reach;
+  const auto isBehind = [&](int a, int b) {  // the step to its neighbour b
+    const float near = line.range[static_cast<std::size_t>(b)];
+    const float step = line.range[static_cast<std::size_t>(a)] - near;
+    return step > std::max(neighborhood_.edge_threshold, kDepthStep * near);
+  };
+  for (int i = 0; i < reach; ++i) {
+    if (isBehind(n - i, n - i - 1) || isBehind(n + i, n + i + 1)) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// The part across the line: along it, it is long where returns are missing. As it would be over the line's own
 /// neighbours with the same part of noise in it; 0 if it is no edge.
-float WideSmoothness::sharpnessAt(int n, int reach) const
+float WideSmoothness::sharpnessAt(int n, const Window& window) const
 {
   constexpr double kSmallestSquare = 1e-12;  // m^2: all at one place
   const auto sumOf = [this](int first, int last) {
     return Eigen::Array4d(Eigen::Array4d::Map(sums_[static_cast<std::size_t>(last) + 1].data()) -
                           Eigen::Array4d::Map(sums_[static_cast<std::size_t>(first)].data()));
   };
-  const int middle = reach / kMiddle;
-  const Eigen::Array4d before = sumOf(n - reach, n - 1) / reach;
-  const Eigen::Array4d after = sumOf(n + 1, n + reach) / reach;
-  const Eigen::Array4d center = sumOf(n - middle, n + middle) / (2 * middle + 1);
-  const Eigen::Vector3d along = (after - before).head<3>().matrix();
+  const Eigen::Array4d before = window.per_side * sumOf(n - window.reach, n - 1);
+  const Eigen::Array4d after = window.per_side * sumOf(n + 1, n + window.reach);
+  const Eigen::Array4d center = window.per_middle * sumOf(n - window.middle, n + window.middle);
   const Eigen::Vector3d mean = (0.5 * (before + after) - center).head<3>().matrix();
+  const double by_noise = kNoiseRatio * 0.5 * (before[3] + after[3]);
+  const double least = by_noise * by_noise / window.noise_ratio;
+  if (!(mean.squaredNorm() > least)) {
+    return 0.0F;
+  }
+  const Eigen::Vector3d along = (after - before).head<3>().matrix();
   const double by_along = mean.dot(along);
   const double squared_across =
       mean.squaredNorm() - by_along * by_along / std::max(along.squaredNorm(), kSmallestSquare);
-  const double squared = squared_across * noiseOver(neighborhood_.each_side, 0) / noiseOver(reach, middle);
-  const double by_noise = kNoiseRatio * 0.5 * (before[3] + after[3]);
-  return squared > by_noise * by_noise ? static_cast<float>(std::sqrt(squared)) : 0.0F;
+  return squared_across > least ? static_cast<float>(std::sqrt(squared_across * window.noise_ratio)) : 0.0F;
 }
 
 void WideSmoothness::forgetAround(const LinePoints& line, int n, std::vector<float>& sharpness) const

@@ -37,16 +37,23 @@ public:
   void forgetAround(const LinePoints& line, int n, std::vector<float>& sharpness) const;
 
 private:
+  /// A point's neighbourhood, whose size tells how much of the noise is left.
+  struct Window {
+    int reach = -1;         ///< points on each side
+    int middle = 0;         ///< of these in the middle
+    double per_side = 0.0;  ///< what a point of a side counts in its mean
+    double per_middle = 0.0;
+    double noise_ratio = 1.0;  ///< variance by noise of the line's own smoothness, in that of this one
+  };
+
   void sum(const LinePoints& line, const std::vector<float>& sigma);
-  void findSteps(const LinePoints& line);
   [[nodiscard]] int reachAt(const LinePoints& line, int n) const;
-  [[nodiscard]] bool isHidden(int n, int reach) const;
-  [[nodiscard]] float sharpnessAt(int n, int reach) const;
+  [[nodiscard]] Window windowOf(int reach) const;
+  [[nodiscard]] bool isHidden(const LinePoints& line, int n, int reach) const;
+  [[nodiscard]] float sharpnessAt(int n, const Window& window) const;
 
   WideNeighborhood neighborhood_;
   std::vector<std::array<double, 4>> sums_;  ///< of coordinates and sigma, of all points before
-  std::vector<int> rise_;                    ///< first point behind the latest step away from the sensor
-  std::vector<int> fall_;                    ///< last point behind the next step towards the sensor
   std::vector<int> reach_;                   ///< neighbours on each side over which a point is an edge; 0: it is none
 };
 
