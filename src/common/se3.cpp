@@ -29,6 +29,21 @@ Eigen::Matrix3d leftJacobian(const Eigen::Vector3d& phi)
 
 }  // namespace
 
+SE3 SE3::inverse() const
+{
+  return {rotation.transpose(), -(rotation.transpose() * translation)};
+}
+
+bool SE3::isFinite() const
+{
+  return rotation.allFinite() && translation.allFinite();
+}
+
+SE3 operator*(const SE3& a, const SE3& b)
+{
+  return {a.rotation * b.rotation, a * b.translation};
+}
+
 Eigen::Matrix3d skew(const Eigen::Vector3d& v)
 {
   Eigen::Matrix3d m;

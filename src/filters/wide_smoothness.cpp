@@ -92,13 +92,16 @@ int WideSmoothness::reachAt(const LinePoints& line, int n) const
 void WideSmoothness::sum(const LinePoints& line, const std::vector<float>& sigma)
 {
   sums_.resize(sigma.size() + 1);
-  Eigen::Array4d sum = Eigen::Array4d::Zero();
-  Eigen::Array4d::Map(sums_[0].data()) = sum;
+  std::array<double, 4> sum{};
+  sums_[0] = sum;
   for (std::size_t n = 0; n < sigma.size(); ++n) {
     if (line.range[n] < kFarthest) {
-      sum += Eigen::Array4f(line.x[n], line.y[n], line.z[n], sigma[n] < kFarthest ? sigma[n] : 0.0F).cast<double>();
+      sum[0] += static_cast<double>(line.x[n]);
+      sum[1] += static_cast<double>(line.y[n]);
+      sum[2] += static_cast<double>(line.z[n]);
+      sum[3] += sigma[n] < kFarthest ? static_cast<double>(sigma[n]) : 0.0;
     }
-    Eigen::Array4d::Map(sums_[n + 1].data()) = sum;
+    sums_[n + 1] = sum;
   }
 }
 

@@ -1,15 +1,11 @@
 #include "motion/motion_estimate.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
 
 namespace {
-
-using Block6 = Eigen::Matrix<double, 6, 6>;
 
 /// How far a velocity that nothing is known of may be from none, m and rad a period: a car on a motorway, a hand that
 /// turns the sensor.
@@ -29,26 +25,19 @@ constexpr double kLeastRotation = 0.0005;
 /// noise since, the rest for the velocity's own error (Riccati's equation of that case).
 constexpr double kPerDensity = 0.62;
 
-/// From the sensor's axes to the world's, for perturbations about the sensor's position.
-Block6 turned(const Eigen::Matrix3d& rotation)
+/// Turns perturbations of pose and velocity about the sensor's position into other axes.
+Matrix12 turnOfBoth(const Eigen::Matrix3d& rotation)
 {
-  Block6 r = Block6::Zero();
-  r.topLeftCorner<3, 3>() = rotation;
-  r.bottomRightCorner<3, 3>() = rotation;
-  return r;
-}
-
-using Square12 = Eigen::Matrix<double, 12, 12>;
-
-Square12 turnedBoth(const Eigen::Matrix3d& rotation)
-{
-  Square12 r = Square12::Zero();
-  r.topLeftCorner<6, 6>() = turned(rotation);
-  r.bottomRightCorner<6, 6>() = turned(rotation);
-  return r;
+  const Matrix6 turn = turnOf(rotation);
+  return inBlocks(turn, Matrix6::Zero(), Matrix6::Zero(), turn);
 }
 
 }  // namespace
+
+Matrix12 MotionEstimate::Growth::of(const Matrix12& covariance) const
+{
+  return propagated(transition, covariance) + noise;
+}
 
 MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity)
     : pose_(world_T_sensor), velocity_(velocity)
@@ -63,15 +52,13 @@ MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocit
 
 Matrix6 MotionEstimate::poseCovariance() const
 {
-  const Block6 r = turned(pose_.rotation);
-  return r * covariance_.topLeftCorner<6, 6>() * r.transpose();
+  return propagated(turnOf(pose_.rotation), Matrix6(covariance_.topLeftCorner<6, 6>()));
 }
 
 void MotionEstimate::place(const SE3& world_T_sensor, const Matrix6& covariance)
 {
   pose_ = world_T_sensor;
-  const Block6 r = turned(pose_.rotation).transpose();
-  covariance_.topLeftCorner<6, 6>() = r * covariance * r.transpose();
+  covariance_.topLeftCorner<6, 6>() = propagated(turnOf(pose_.rotation.transpose()), covariance);
   covariance_.topRightCorner<6, 6>().setZero();
   covariance_.bottomLeftCorner<6, 6>().setZero();
 }
@@ -95,8 +82,8 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
   for (int i = 0; i < static_cast<int>(steps); ++i) {
     advance(periods / steps, growth);
   }
-  const Square12 was = covariance_;
-  const Block6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
+  const Matrix12 was = covariance_;
+  const Matrix6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
   growth.noise.topLeftCorner<6, 6>() += periods_error * periods_error * squared_motion;
   covariance_ = growth.of(was);
   periods_ = periods_error > 0.0 || hint ? 0.0 : periods;
@@ -110,50 +97,47 @@ void MotionEstimate::advance(double periods, Growth& growth)
   const SE3 step = exp(periods * velocity_);
   pose_ = pose_ * step;
   pose_.rotation = nearestRotation(pose_.rotation);
-  Square12 f = Square12::Identity();
-  f.topLeftCorner<6, 6>() = adjoint(step.inverse());
-  f.topRightCorner<6, 6>() = periods * Block6::Identity();
-  Square12 q = Square12::Zero();
+  const Matrix12 f =
+      inBlocks(adjoint(step.inverse()), periods * Matrix6::Identity(), Matrix6::Zero(), Matrix6::Identity());
+  Matrix12 q = Matrix12::Zero();
   for (int i = 0; i < 6; ++i) {
     const double density = late_errors_[i] / kPerDensity;
     q(i, i) = density * periods * periods * periods / 3.0;
     q(i, 6 + i) = q(6 + i, i) = density * periods * periods / 2.0;
     q(6 + i, 6 + i) = density * periods;
   }
-  growth = {f * growth.transition, Square12(f * growth.noise * f.transpose()) + q};
+  growth = {product(f, growth.transition), propagated(f, growth.noise) + q};
 }
 
 /// Kalman's filter for a motion that was measured: it says nothing of where the sensor was, but for what that has in
 /// common with how it moved.
 void MotionEstimate::take(const MotionHint& hint, const SE3& before, const Matrix12& was, const Growth& growth)
 {
-  const Eigen::Matrix<double, 6, 6> by_velocity = growth.transition.topRightCorner<6, 6>();
-  const Square12 covariance = was;
-  const Eigen::Matrix<double, 12, 6> common =
-      growth.transition * covariance.rightCols<6>() * by_velocity.transpose() + growth.noise.leftCols<6>();
-  const Block6 motion =
-      by_velocity * covariance.bottomRightCorner<6, 6>() * by_velocity.transpose() + growth.noise.topLeftCorner<6, 6>();
-  const Eigen::LDLT<Block6> innovation(motion + Block6(hint.covariance));
+  const Matrix6 zero = Matrix6::Zero();
+  const Matrix12 moved = inBlocks(zero, growth.transition.topRightCorner<6, 6>(), zero, zero);  // the motion's Jacobian
+  Matrix12 common = product(product(growth.transition, was), moved.transpose());
+  common.leftCols<6>() += growth.noise.leftCols<6>();
+  const Matrix6 motion =
+      propagated(moved, was).topLeftCorner<6, 6>() + growth.noise.topLeftCorner<6, 6>() + hint.covariance;
+  const Matrix12 gain = product(common, inBlocks(inverseOf(motion), zero, zero, zero));
   const SE3 off = (before.inverse() * pose_).inverse() * hint.last_T_now;
-  Eigen::Matrix<double, 6, 1> error;
+  Vector6 error;
   error << off.translation, logSO3(off.rotation);
-  const Eigen::Matrix<double, 12, 6> gain = innovation.solve(common.transpose()).transpose();
-  shift(gain * error);
-  covariance_ -= gain * common.transpose();
+  shift(gain.leftCols<6>() * error);
+  covariance_ -= product(gain, common.transpose());
 }
 
 /// \param change perturbation of pose and velocity
-void MotionEstimate::shift(const Eigen::Matrix<double, 12, 1>& change)
+void MotionEstimate::shift(const Vector12& change)
 {
   pose_ = SE3(nearestRotation(pose_.rotation * expSO3(change.segment<3>(3))),
               pose_.translation + pose_.rotation * Eigen::Vector3d(change.head<3>()));
   velocity_ += change.tail<6>();
 }
 
-MotionEstimate::Matrix12 MotionEstimate::covariance() const
+Matrix12 MotionEstimate::covariance() const
 {
-  const Square12 r = turnedBoth(pose_.rotation);
-  return r * covariance_ * r.transpose();
+  return propagated(turnOfBoth(pose_.rotation), covariance_);
 }
 
 /// \param innovation what was measured against the prediction, as a perturbation of the pose
@@ -181,25 +165,21 @@ void MotionEstimate::correct(const SE3& world_T_sensor, const Matrix6& covarianc
   Vector6 error;
   error.head<3>() = pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation);
   error.tail<3>() = logSO3(pose_.rotation.transpose() * world_T_sensor.rotation);
-  const Block6 r = turned(pose_.rotation).transpose();
-  const Square12 p = covariance_;
-  const Block6 noise = r * covariance * r.transpose();
-  const Block6 innovation = Block6(p.topLeftCorner<6, 6>()) + noise;
-  learnFrom(error, p.diagonal().head<6>().cwiseQuotient(innovation.diagonal()));
-  const Eigen::Matrix<double, 12, 6> gain =
-      innovation.ldlt().solve(Eigen::Matrix<double, 6, 12>(p.topRows<6>())).transpose();
-  shift(gain * error);
-  Square12 left = Square12::Identity();
-  left.leftCols<6>() -= gain;
-  covariance_ = left * p * left.transpose() + gain * noise * gain.transpose();
+  const Matrix6 noise = propagated(turnOf(pose_.rotation.transpose()), covariance);
+  const Matrix6 innovation = covariance_.topLeftCorner<6, 6>() + noise;
+  learnFrom(error, covariance_.diagonal().head<6>().cwiseQuotient(innovation.diagonal()));
+  const Matrix6 zero = Matrix6::Zero();
+  const Matrix12 gain = product(covariance_, inBlocks(inverseOf(innovation), zero, zero, zero));
+  shift(gain.leftCols<6>() * error);
+  const Matrix12 left = Matrix12::Identity() - gain;
+  covariance_ = propagated(left, covariance_) + propagated(gain, inBlocks(noise, zero, zero, zero));
 }
 
 void MotionEstimate::update(const SE3& world_T_sensor, const Vector6& velocity, const Matrix12& covariance)
 {
   constexpr double kNothing = 1e-9;
   const Eigen::Matrix3d turned_back = nearestRotation(world_T_sensor.rotation).transpose();
-  const Square12 r = turnedBoth(turned_back);
-  const Square12 known = r * covariance * r.transpose();
+  const Matrix12 known = propagated(turnOfBoth(turned_back), covariance);
   const Vector6 told = (1.0 - known.diagonal().head<6>().array() / covariance_.diagonal().head<6>().array()).matrix();
   Vector6 off;
   off << pose_.rotation.transpose() * (world_T_sensor.translation - pose_.translation),

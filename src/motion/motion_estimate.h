@@ -2,7 +2,8 @@
 /// The one estimate of how the sensor moves: pose, velocity and what is known of both.
 #pragma once
 
-#include <pcl_floam/common/se3.h>
+#include "common/covariance.h"
+
 #include <pcl_floam/motion/motion_hint.h>
 
 #include <optional>
@@ -17,8 +18,6 @@ constexpr int kSweepsUntilKnown = 3;
 /// of the sensor.
 class MotionEstimate {
 public:
-  using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
-
   /// A pose that is exact, and a velocity that is a guess.
   explicit MotionEstimate(const SE3& world_T_sensor = {}, const Vector6& velocity = Vector6::Zero());
 
@@ -61,15 +60,12 @@ private:
     Matrix12 transition = Matrix12::Identity();
     Matrix12 noise = Matrix12::Zero();
 
-    [[nodiscard]] Matrix12 of(const Matrix12& covariance) const
-    {
-      return transition * covariance * transition.transpose() + noise;
-    }
+    [[nodiscard]] Matrix12 of(const Matrix12& covariance) const;
   };
 
   void advance(double periods, Growth& growth);
   void take(const MotionHint& hint, const SE3& before, const Matrix12& was, const Growth& growth);
-  void shift(const Eigen::Matrix<double, 12, 1>& change);
+  void shift(const Vector12& change);
   void learnFrom(const Vector6& innovation, const Vector6& told);
 
   SE3 pose_;

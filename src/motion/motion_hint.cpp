@@ -1,5 +1,7 @@
 #include <pcl_floam/motion/motion_hint.h>
 
+#include "common/covariance.h"
+
 #include <Eigen/Cholesky>
 
 #include <stdexcept>
@@ -22,7 +24,7 @@ void MotionHint::validate() const
 MotionHint operator*(const MotionHint& first, const MotionHint& second)
 {
   const Matrix6 back = adjoint(second.last_T_now.inverse());
-  return {first.last_T_now * second.last_T_now, back * first.covariance * back.transpose() + second.covariance};
+  return {first.last_T_now * second.last_T_now, propagated(back, first.covariance) + second.covariance};
 }
 
 }  // namespace pcl_floam

@@ -13,17 +13,10 @@ struct SweepPose {
   Vector6 acceleration = Vector6::Zero();  ///< change of the twist over the sweep
 
   /// At another fraction of the sweep.
-  [[nodiscard]] SE3 at(double fraction) const
-  {
-    const double since = fraction - 0.5;
-    return middle * exp(since * twist + 0.5 * since * since * acceleration);
-  }
+  [[nodiscard]] SE3 at(double fraction) const;
 };
 
 /// Seen from elsewhere.
-[[nodiscard]] inline SweepPose operator*(const SE3& target_T_source, const SweepPose& pose)
-{
-  return {target_T_source * pose.middle, pose.twist, pose.acceleration};
-}
+[[nodiscard]] SweepPose operator*(const SE3& target_T_source, const SweepPose& pose);
 
 }  // namespace pcl_floam

@@ -1,5 +1,7 @@
 #include "odometry/first_scans.h"
 
+#include "common/covariance.h"
+
 #include "odometry/start.h"
 
 #include <algorithm>
@@ -68,10 +70,7 @@ std::vector<SE3> FirstScans::correct(const std::vector<SweepPose>& poses, const 
 
 Matrix6 turned(const Matrix6& covariance, const SE3& world_T_track)
 {
-  Matrix6 r = Matrix6::Zero();
-  r.topLeftCorner<3, 3>() = world_T_track.rotation;
-  r.bottomRightCorner<3, 3>() = world_T_track.rotation;
-  return r * covariance * r.transpose();
+  return propagated(turnOf(world_T_track.rotation), covariance);
 }
 
 void turnIntoWorld(OdometryReport& report, const SE3& world_T_track)

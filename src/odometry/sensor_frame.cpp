@@ -1,5 +1,7 @@
 #include "odometry/sensor_frame.h"
 
+#include "common/covariance.h"
+
 namespace pcl_floam {
 
 SensorFrame::SensorFrame(const SE3& frame_T_sensor)
@@ -15,7 +17,7 @@ CloudView SensorFrame::ofSensor(const CloudView& cloud)
 MotionHint SensorFrame::ofSensor(const MotionHint& hint) const
 {
   const Matrix6 turned = adjoint(sensor_T_frame_);
-  return {sensor_T_frame_ * hint.last_T_now * frame_T_sensor_, turned * hint.covariance * turned.transpose()};
+  return {sensor_T_frame_ * hint.last_T_now * frame_T_sensor_, propagated(turned, hint.covariance)};
 }
 
 void SensorFrame::tell(const OdometryReport& of_sensor)
@@ -27,7 +29,7 @@ void SensorFrame::tell(const OdometryReport& of_sensor)
   const Matrix6 lever = leverOf(-(of_sensor.world_T_sensor.rotation * sensor_T_frame_.translation));
   report_ = of_sensor;
   report_.world_T_sensor = of_sensor.world_T_sensor * sensor_T_frame_;
-  report_.covariance = lever * of_sensor.covariance * lever.transpose();
+  report_.covariance = propagated(lever, of_sensor.covariance);
   for (SE3& pose : report_.corrected_poses) {
     pose = pose * sensor_T_frame_;
   }

@@ -1,8 +1,8 @@
 #include "odometry/told_motion.h"
 
+#include "common/covariance.h"
 #include "odometry/first_motion.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -23,13 +23,10 @@ constexpr double kOpen = 0.05;
 Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotation,
                              const std::optional<MotionHint>& hint)
 {
-  using Square = Eigen::Matrix<double, 6, 6>;
-  Square covariance = told;
+  Matrix6 covariance = told;
   if (hint) {
-    Square turn = Square::Zero();
-    turn.topLeftCorner<3, 3>() = turn.bottomRightCorner<3, 3>() = rotation;
-    const Square both = covariance + turn * Square(hint->covariance) * turn.transpose();
-    covariance -= covariance * both.ldlt().solve(covariance);
+    const Matrix6 both = told + propagated(turnOf(rotation), hint->covariance);
+    covariance -= propagated(told, inverseOf(both));
   }
   return covariance.topLeftCorner<3, 3>();
 }

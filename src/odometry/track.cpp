@@ -1,7 +1,5 @@
 #include "odometry/track.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 #include <utility>
 
@@ -176,10 +174,10 @@ void Track::judge(const SurfaceRegistration& registration)
 {
   constexpr double kKept = 1.0 - 1.0 / kRememberedSweeps;  // of the evidence, from sweep to sweep
   const SE3& found = registration.report.target_T_source;
-  Eigen::Matrix<double, 6, 1> off;
+  Vector6 off;
   off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
-  const Eigen::Matrix<double, 6, 6> expected = motion_.poseCovariance() + registration.report.covariance;
-  evidence_ = kKept * evidence_ + registration.evidence - 0.5 * off.dot(expected.ldlt().solve(off));
+  const Matrix6 expected = motion_.poseCovariance() + registration.report.covariance;
+  evidence_ = kKept * evidence_ + registration.evidence - 0.5 * squaredDeviations(off, expected);
 }
 
 /// Distortion Compensation Update (Eq. 12).

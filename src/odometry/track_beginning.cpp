@@ -1,8 +1,6 @@
 // How a track begins: with the motion that two sweeps share, or with sweeps whose poses are known.
 #include "odometry/track.h"
 
-#include <Eigen/Cholesky>
-
 #include <algorithm>
 
 namespace pcl_floam {
@@ -13,21 +11,17 @@ namespace {
 Matrix12 oneMotion(double periods)
 {
   constexpr double kRest = 1e-6;  // by how much it may be another at the end
-  Eigen::Matrix<double, 12, 12> covariance = Eigen::Matrix<double, 12, 12>::Identity();
-  covariance.topLeftCorner<6, 6>() *= periods * periods;
-  covariance.topRightCorner<6, 6>().diagonal().setConstant(periods);
-  covariance.bottomLeftCorner<6, 6>().diagonal().setConstant(periods);
-  covariance.bottomRightCorner<6, 6>() *= 1.0 + kRest;
-  return covariance;
+  const Matrix6 one = Matrix6::Identity();
+  return inBlocks(periods * periods * one, periods * one, periods * one, (1.0 + kRest) * one);
 }
 
 /// How far a motion is from what was told of it, in its standard deviations.
 double squaredError(const SE3& motion, const MotionHint& hint)
 {
   const SE3 off = hint.last_T_now.inverse() * motion;
-  Eigen::Matrix<double, 6, 1> error;
+  Vector6 error;
   error << off.translation, logSO3(off.rotation);
-  return error.dot(Eigen::Matrix<double, 6, 6>(hint.covariance).ldlt().solve(error));
+  return squaredDeviations(error, hint.covariance);
 }
 
 }  // namespace

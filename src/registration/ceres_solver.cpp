@@ -1,5 +1,7 @@
 #include "registration/ceres_solver.h"
 
+#include "common/eigen_analysis.h"
+
 #include <ceres/ceres.h>
 
 #include <memory>
@@ -109,8 +111,8 @@ class EquationsCost : public ceres::SizedCostFunction<6, 6> {
 public:
   EquationsCost(const PoseEquations& equations, const DegreesOfFreedom& locked)
   {
-    Eigen::Matrix<double, 6, 6> information = equations.information;
-    Eigen::Matrix<double, 6, 1> gradient = equations.gradient;
+    Matrix6 information = equations.information;
+    Vector6 gradient = equations.gradient;
     for (int i = 0; i < 6; ++i) {
       if (locked[static_cast<std::size_t>(i)]) {
         information.row(i).setZero();
@@ -118,13 +120,13 @@ public:
         gradient[i] = 0.0;
       }
     }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(information);
-    const double negligible = 1e-12 * solver.eigenvalues()[5];
+    const EigenAnalysis axes = analyse(information);
+    const double negligible = 1e-12 * axes.values[5];
     for (int i = 0; i < 6; ++i) {
-      const double d = solver.eigenvalues()[i];
+      const double d = axes.values[i];
       if (d > negligible) {
-        derivative_.row(i) = std::sqrt(d) * solver.eigenvectors().col(i).transpose();
-        residual_[i] = solver.eigenvectors().col(i).dot(gradient) / std::sqrt(d);
+        derivative_.row(i) = std::sqrt(d) * axes.vectors.col(i).transpose();
+        residual_[i] = axes.vectors.col(i).dot(gradient) / std::sqrt(d);
       }
     }
   }

@@ -1,5 +1,6 @@
 #include <pcl_floam/registration/cloud_registration.h>
 
+#include "common/covariance.h"
 #include "registration/cloud_alignment.h"
 #include "registration/start_search.h"
 #include "registration/weak_directions.h"
@@ -101,9 +102,9 @@ private:
     const InformationAnalysis analysis = alignment_.analysis();
     report_.weak_directions = analysis.weakDirections(kWeak * along() * analysis.largest(), shares);
     const Matrix6 to_centroid = leverOf(-alignment_.arm());
-    report_.information = to_centroid.transpose() * sums.information * to_centroid;
+    report_.information = propagated(to_centroid.transpose(), sums.information);
     const Matrix6 to_origin = leverOf(alignment_.arm());
-    report_.covariance = to_origin * analysis.covariance(sums.residualVariance(), shares) * to_origin.transpose();
+    report_.covariance = propagated(to_origin, analysis.covariance(sums.residualVariance(), shares));
     for (int i = 0; i < 6; ++i) {
       if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
         report_.covariance.row(i).setZero();

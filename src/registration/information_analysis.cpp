@@ -1,7 +1,6 @@
 #include "registration/information_analysis.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -15,24 +14,6 @@ constexpr double kNoInformation = 1e-9;
 
 /// Sums and eigenvalues are divided by no less.
 constexpr double kSmallest = 1e-300;
-
-/// Gram and Schmidt's: an orthonormal basis of what columns have beside those of an orthonormal basis.
-Motions orthonormalBeside(const Motions& known, const Motions& columns)
-{
-  constexpr double kDependent = 1e-6;
-  Motions all = known;
-  for (int i = 0; i < columns.cols() && all.cols() < 6; ++i) {
-    Eigen::Matrix<double, 6, 1> column = columns.col(i).normalized();
-    for (int j = 0; j < all.cols(); ++j) {
-      column -= all.col(j).dot(column) * all.col(j);
-    }
-    if (column.norm() > kDependent) {
-      all.conservativeResize(6, all.cols() + 1);
-      all.rightCols<1>() = column.normalized();
-    }
-  }
-  return all.rightCols(all.cols() - known.cols());
-}
 
 }  // namespace
 
@@ -64,14 +45,14 @@ InformationAnalysis::InformationAnalysis(const NormalEquations& equations, doubl
     return;
   }
   const auto scaled = [&](const Matrix6& m) {
-    return Within(basis.transpose() * (scale_.asDiagonal() * m * scale_.asDiagonal()) * basis / weight_);
+    return Matrix6(scale_.asDiagonal() * m * scale_.asDiagonal() / weight_);
   };
-  const Within all = scaled(equations.information);
-  const Within known = weak_threshold > 0.0 ? Within(all - scaled(equations.noise_information)) : all;
-  const Eigen::SelfAdjointEigenSolver<Within> solver(known);
-  eigenvalues_ = solver.eigenvalues();
-  eigenvectors_ = basis * solver.eigenvectors();
-  invert(solver.eigenvectors().transpose() * all * solver.eigenvectors());
+  const Matrix6 all = scaled(equations.information);
+  const Matrix6 known = weak_threshold > 0.0 ? Matrix6(all - scaled(equations.noise_information)) : all;
+  const EigenAnalysis analysis = analyse(within(known, basis));
+  eigenvalues_ = analysis.values;
+  eigenvectors_ = basis * analysis.vectors;
+  invert(within(all, eigenvectors_));
 }
 
 /// H may say a little of weak directions, too: its parts that lead there are cut off.
@@ -104,6 +85,21 @@ int InformationAnalysis::below(double limit) const
   return count;
 }
 
+Vector6 InformationAnalysis::motion(int i) const
+{
+  return scale_.cwiseProduct(eigenvectors_.col(i));
+}
+
+double InformationAnalysis::part(const Vector6& perturbation, int i) const
+{
+  return eigenvectors_.col(i).dot(perturbation.cwiseQuotient(scale_));
+}
+
+double InformationAnalysis::length(const Vector6& perturbation) const
+{
+  return perturbation.cwiseQuotient(scale_).norm();
+}
+
 Vector6 InformationAnalysis::step() const
 {
   const Motions motions = scale_.asDiagonal() * eigenvectors_;
@@ -124,7 +120,7 @@ Matrix6 InformationAnalysis::covariance(double variance, const std::vector<doubl
     inverse.col(i) *= times;
   }
   const Motions motions = scale_.asDiagonal() * eigenvectors_;
-  return variance / weight_ * (motions * inverse * motions.transpose());
+  return variance / weight_ * outOf(inverse, motions);
 }
 
 std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, const std::vector<double>& shares) const

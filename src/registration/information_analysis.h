@@ -2,6 +2,7 @@
 /// Which directions of motion the correspondences constrain, and the step and covariance that follow.
 #pragma once
 
+#include "common/eigen_analysis.h"
 #include "registration/normal_equations.h"
 
 #include <pcl_floam/registration/registration_report.h>
@@ -12,10 +13,7 @@
 
 namespace pcl_floam {
 
-/// Perturbations about the local origin, one a column.
-using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-
-/// Those of the degrees of freedom of a frame that are not locked.
+/// Perturbations about the local origin that move those degrees of freedom of a frame that are not locked.
 /// \param arm from the frame's origin to the local origin, in the target's axes
 [[nodiscard]] Motions freeMotions(const DegreesOfFreedom& locked, const Eigen::Vector3d& arm = Eigen::Vector3d::Zero());
 
@@ -25,10 +23,6 @@ using Motions = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
 /// What the noise of the normals seems to tell is taken out before a direction is called weak or strong: along a smooth
 /// corridor that is all there is.
 class InformationAnalysis {
-  using Column = Eigen::Matrix<double, 6, 1>;  // Eigen 3.4's solvers do not take unaligned types
-  using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
-  using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-
 public:
   /// \param weak_threshold eigenvalues per correspondence below this are weak; 0: none is, and noise is not looked for
   /// \param held           perturbations that are taken out of the free ones
@@ -45,20 +39,14 @@ public:
 
   /// A perturbation along direction \p i that moves the typical point by 1 m, and the gradient along it per m, as the
   /// correspondences stand.
-  [[nodiscard]] Vector6 motion(int i) const { return scale_.asDiagonal() * eigenvectors_.col(i); }
+  [[nodiscard]] Vector6 motion(int i) const;
   [[nodiscard]] double stiffness(int i) const { return eigenvalues_[i] * weight_; }
 
   /// What a perturbation has along direction \p i, m.
-  [[nodiscard]] double part(const Vector6& perturbation, int i) const
-  {
-    return eigenvectors_.col(i).dot(scale_.cwiseInverse().asDiagonal() * perturbation);
-  }
+  [[nodiscard]] double part(const Vector6& perturbation, int i) const;
 
   /// By how much a perturbation moves the typical point, m.
-  [[nodiscard]] double length(const Vector6& perturbation) const
-  {
-    return (scale_.cwiseInverse().asDiagonal() * perturbation).norm();
-  }
+  [[nodiscard]] double length(const Vector6& perturbation) const;
 
   /// Covariance of the perturbation; weak directions get the variance of an eigenvalue near zero.
   /// \param variance of a residual of weight 1, m^2
@@ -74,9 +62,10 @@ private:
 
   const NormalEquations& equations_;
   double weak_threshold_;
-  double weight_;         ///< sum of the weights, not zero
-  Column scale_;          ///< from scaled unknowns (all in m) to (m, rad)
-  Values eigenvalues_;    ///< of the scaled H without noise over the sum of the weights, within the free motions
+  double weight_;  ///< sum of the weights, not zero
+  Vector6 scale_;  ///< from scaled unknowns (all in m) to (m, rad)
+  /// Of the scaled H without noise over the sum of the weights, within the free motions.
+  decltype(EigenAnalysis::values) eigenvalues_;
   Motions eigenvectors_;  ///< columns, of the same
   Within inverse_;        ///< of H in their axes within the strong directions, zero along weak ones
 };

@@ -1,9 +1,8 @@
 #include "registration/net_information.h"
 
+#include "common/covariance.h"
+#include "common/eigen_analysis.h"
 #include "registration/information_analysis.h"
-
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -12,47 +11,39 @@ namespace pcl_floam {
 
 namespace {
 
-using Square6 = Eigen::Matrix<double, 6, 6>;
-
 /// What residuals tell that tell of one direction alone, as a part of them: less is nothing.
 constexpr double kNothing = 1e-6;
 
 /// Nothing, along each direction: it makes an information matrix positive.
-Square6 nothingOf(const NormalEquations& e)
+Matrix6 nothingOf(const NormalEquations& e)
 {
-  return Square6((kNothing * e.weight * commonUnits(e).cwiseAbs2().cwiseInverse()).asDiagonal());
+  return Matrix6((kNothing * e.weight * commonUnits(e).cwiseAbs2().cwiseInverse()).asDiagonal());
 }
 
 /// As motions k d see them that are looked for in place of d.
-NormalEquations partOf(const NormalEquations& equations, const Square6& k)
+NormalEquations partOf(const NormalEquations& equations, const Matrix6& k)
 {
   NormalEquations part = equations;
   for (Matrix6* m : {&part.information, &part.coupling, &part.twist_information}) {
-    *m = k.transpose() * Square6(*m) * k;
+    *m = propagated(k.transpose(), *m);
   }
   for (Vector6* v : {&part.gradient, &part.twist_gradient}) {
-    *v = k.transpose() * Eigen::Matrix<double, 6, 1>(*v);
+    *v = Vector6(k.transpose() * *v);
   }
   return part;
 }
 
 /// Of the motions that \p among spans, at right angles, those of which \p told is next to nothing of the information.
-Motions scarcelyToldBy(const Square6& told, const Square6& information, const Motions& among)
+Motions scarcelyToldBy(const Matrix6& told, const Matrix6& information, const Motions& among)
 {
   // Axes have noise themselves: along one that is slightly off, others would seem to tell of it.
   constexpr double kNextToNothing = 0.03;
-  using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
   if (among.cols() == 0) {
     return among;
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Within> axes(Within(among.transpose() * told * among),
-                                                              Within(among.transpose() * information * among));
-  const Eigen::Index count = (axes.eigenvalues().array() < kNextToNothing).count();  // they are rising
-  if (count == 0) {
-    return Motions(6, 0);
-  }
-  const Motions spanned = among * axes.eigenvectors().leftCols(count);
-  return Eigen::HouseholderQR<Motions>(spanned).householderQ() * Motions::Identity(6, count);
+  const EigenAnalysis axes = analyse(within(told, among), within(information, among));
+  const Eigen::Index count = (axes.values.array() < kNextToNothing).count();  // they are rising
+  return orthonormalBeside(Motions(6, 0), Motions(among * axes.vectors.leftCols(count)));
 }
 
 }  // namespace
@@ -78,12 +69,11 @@ NetEquations withoutNoise(const NormalEquations& equations)
   if (!(equations.squared_extent > 0.0)) {
     return {equations, equations};
   }
-  const Square6 nothing = nothingOf(equations);
-  const Square6 information = equations.information + nothing;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Square6> axes(Square6(equations.noise_information + nothing),
-                                                               information);
-  const Eigen::Matrix<double, 6, 1> root = (1.0 - kMayBe * axes.eigenvalues().array()).max(0.0).sqrt();
-  const Square6 k = axes.eigenvectors() * root.asDiagonal() * axes.eigenvectors().transpose() * information;
+  const Matrix6 nothing = nothingOf(equations);
+  const Matrix6 information = equations.information + nothing;
+  const EigenAnalysis axes = analyse(equations.noise_information + nothing, information);
+  const Vector6 root = (1.0 - kMayBe * axes.values.array()).max(0.0).sqrt().matrix();
+  const Matrix6 k = product(propagated(axes.vectors, Matrix6(root.asDiagonal())), information);
   NetEquations net = {partOf(equations, k), {}};
   net.known = partOf(net.steps, k);
   net.steps.gradient = net.known.gradient;
@@ -98,14 +88,14 @@ UntoldMotions untoldMotions(const NormalEquations& net, const NormalEquations& a
     return untold;
   }
   const Vector6 units = commonUnits(all);
-  const auto inUnits = [&](const Matrix6& m) { return Square6(units.asDiagonal() * Square6(m) * units.asDiagonal()); };
-  const Square6 information = inUnits(Matrix6(all.information + nothingOf(all)));
-  const Square6 told = inUnits(net.information);
+  const auto inUnits = [&](const Matrix6& m) { return propagated(Matrix6(units.asDiagonal()), m); };
+  const Matrix6 information = inUnits(all.information + nothingOf(all));
+  const Matrix6 told = inUnits(net.information);
   const Motions motions = scarcelyToldBy(told, information, Motions::Identity(6, 6));
-  untold.onto = units.asDiagonal() * Square6(motions * motions.transpose()) * units.cwiseInverse().asDiagonal();
+  untold.onto = units.asDiagonal() * Matrix6(motions * motions.transpose()) * units.cwiseInverse().asDiagonal();
   const Motions named = scarcelyToldBy(inUnits(besides), information, motions);
   for (Eigen::Index i = 0; i < named.cols(); ++i) {
-    const Eigen::Matrix<double, 6, 1> direction = named.col(i);
+    const Vector6 direction = named.col(i);
     untold.directions.push_back({direction, std::max(0.0, direction.dot(told * direction)) / all.weight});
   }
   return untold;

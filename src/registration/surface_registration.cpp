@@ -3,9 +3,6 @@
 #include "registration/net_information.h"
 #include "registration/surface_residuals.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include <algorithm>
 #include <cmath>
 
@@ -27,10 +24,6 @@ constexpr double kSmallStep = 0.3;
 
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
-
-using Square6 = Eigen::Matrix<double, 6, 6>;
-using Square12 = Eigen::Matrix<double, 12, 12>;
-using Column12 = Eigen::Matrix<double, 12, 1>;
 
 class PoseEstimation {
 public:
@@ -67,7 +60,7 @@ private:
       const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);
       sums = told(accumulate(look, all ? 1 : kFirstStride));
       report.iterations = i + 1;
-      const Column12 step = sums.equations.count() < kFewest ? Column12(Column12::Zero()) : stepOf(sums);
+      const Vector12 step = sums.equations.count() < kFewest ? Vector12(Vector12::Zero()) : stepOf(sums);
       if (sums.equations.count() < kFewest) {
         report.termination = Termination::too_few_correspondences;
       } else if (!step.allFinite()) {
@@ -81,7 +74,7 @@ private:
   }
 
   /// \return whether it was a small step
-  bool take(const Column12& step, const SurfaceSums& sums)
+  bool take(const Vector12& step, const SurfaceSums& sums)
   {
     const Vector6 motion = step.head<6>();
     const Eigen::Matrix3d back = pose_.rotation.transpose();
@@ -106,8 +99,8 @@ private:
     report.plane_correspondences = sums.equations.planes;
     report.point_correspondences = sums.equations.points;
     report.plane_inliers = sums.equations.plane_inliers;
-    report.information = strong_.transpose() * sums.equations.information * strong_;
-    const Matrix6 net = strong_.transpose() * Square6(net_) * strong_;
+    report.information = propagated(strong_.transpose(), sums.equations.information);
+    const Matrix6 net = propagated(strong_.transpose(), net_);
     result.told = covarianceBy(net / kResidualsBesideMotion + besides().information);
     report.cost = sums.equations.cost;
     report.residual_rms =
@@ -142,17 +135,17 @@ private:
   /// Of the pose, whatever was expected.
   [[nodiscard]] Matrix6 covarianceBy(const Matrix6& information) const
   {
-    Square6 known = information;
+    Matrix6 known = information;
     known.diagonal().array() += kNothingKnown;
     holdLocked(known);
-    return withoutLocked(Square6(known.inverse()));
+    return withoutLocked(inverseOf(known));
   }
 
   /// Symmetric to the bit: it is the next sweep's prior, and what rounding left would grow from sweep to sweep.
-  [[nodiscard]] Square12 posterior() const
+  [[nodiscard]] Matrix12 posterior() const
   {
-    const Square12 covariance = equationsOf(known_).information.inverse();
-    return withoutLocked(Square12(0.5 * (covariance + covariance.transpose())));
+    const Matrix12 covariance = inverseOf(equationsOf(known_).information);
+    return withoutLocked(Matrix12(0.5 * (covariance + covariance.transpose())));
   }
 
   /// As if they were known.
@@ -198,7 +191,7 @@ private:
       told.equations = net.steps;
       known_ = net.known;
     }
-    strong_ = Square6::Identity() - Square6(untold.onto);
+    strong_ = Matrix6::Identity() - untold.onto;
     weak_ = untold.directions;
     prior_ = problem_.prior.apartFrom(untold.onto).information();
     return told;
@@ -232,15 +225,15 @@ private:
   }
 
   struct Equations {
-    Square12 information;
-    Column12 gradient;
+    Matrix12 information;
+    Vector12 gradient;
   };
 
   /// Of pose and velocity: what the residuals say, as so many independent ones, and what was known before.
   [[nodiscard]] Equations equationsOf(const NormalEquations& e) const
   {
-    const auto cleaned = [&](const Matrix6& m) { return Square6(strong_.transpose() * m * strong_); };
-    const Column12 off = problem_.prior.offset(pose_, velocity_);
+    const auto cleaned = [&](const Matrix6& m) { return propagated(strong_.transpose(), m); };
+    const Vector12 off = problem_.prior.offset(pose_, velocity_);
     Equations equations;
     equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
         cleaned(e.twist_information);
@@ -259,7 +252,7 @@ private:
     return equations;
   }
 
-  [[nodiscard]] Column12 stepOf(const SurfaceSums& sums) const
+  [[nodiscard]] Vector12 stepOf(const SurfaceSums& sums) const
   {
     const Equations equations = equationsOf(sums.equations);
     return -equations.information.ldlt().solve(equations.gradient);
@@ -268,7 +261,7 @@ private:
   const SurfaceProblem& problem_;
   SE3 pose_;
   Vector6 velocity_;  // per period, in the sensor's axes
-  Square12 prior_;
+  Matrix12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
   SurfaceRoom own_room_;
@@ -276,7 +269,7 @@ private:
   NormalEquations known_;  // of the last iteration
   Matrix6 net_ = Matrix6::Zero();
   std::vector<WeakDirection> weak_;
-  Square6 strong_ = Square6::Identity();  // projects on all other directions
+  Matrix6 strong_ = Matrix6::Identity();  // projects on all other directions
 };
 
 }  // namespace

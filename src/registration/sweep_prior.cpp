@@ -1,36 +1,25 @@
 #include "registration/sweep_prior.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 namespace pcl_floam {
 
 Matrix12 SweepPrior::information() const
 {
-  using Square = Eigen::Matrix<double, 6, 6>;
   constexpr double kLeastVariance = 1e-12;
-  const Square pose_covariance = covariance.topLeftCorner<6, 6>() + kLeastVariance * Matrix6::Identity();
-  const Square common = covariance.topRightCorner<6, 6>();
-  const Square gain = pose_covariance.ldlt().solve(common).transpose();
-  const Square rest = covariance.bottomRightCorner<6, 6>() - gain * common + kLeastVariance * Square::Identity();
-  const Square known = rest.inverse();
-  Matrix12 information;
-  information << gain.transpose() * known * gain, -gain.transpose() * known, -known * gain, known;
-  information.topLeftCorner<6, 6>() +=
-      pose_counts ? Square(pose_covariance.inverse()) : Square(kNothingKnown * Square::Identity());
-  return information;
+  const Matrix6 least = kLeastVariance * Matrix6::Identity();
+  const Matrix6 of_pose = inverseOf(Matrix6(covariance.topLeftCorner<6, 6>() + least));
+  const Matrix6 common = covariance.topRightCorner<6, 6>();
+  const Matrix6 gain = product(common.transpose(), of_pose);
+  const Matrix6 known = inverseOf(Matrix6(covariance.bottomRightCorner<6, 6>() - product(gain, common) + least));
+  const Matrix6 following = product(known, gain);
+  const Matrix6 pose_alone = pose_counts ? of_pose : Matrix6(kNothingKnown * Matrix6::Identity());
+  return inBlocks(product(gain.transpose(), following) + pose_alone, -following.transpose(), -following, known);
 }
 
 SweepPrior SweepPrior::apartFrom(const Matrix6& onto) const
 {
-  using Square = Eigen::Matrix<double, 12, 12>;
-  Square these = Square::Zero();
-  these.topLeftCorner<6, 6>() = onto;
-  these.bottomRightCorner<6, 6>() = onto;
-  const Square others = Square::Identity() - these;
-  const Square all = covariance;
+  const Matrix12 these = inBlocks(onto, Matrix6::Zero(), Matrix6::Zero(), onto);
   SweepPrior apart = *this;
-  apart.covariance = others * all * others.transpose() + these * all * these.transpose();
+  apart.covariance = propagated(Matrix12::Identity() - these, covariance) + propagated(these, covariance);
   return apart;
 }
 

@@ -2,12 +2,9 @@
 /// What is expected of a sweep before it is registered.
 #pragma once
 
-#include <pcl_floam/common/se3.h>
+#include "common/covariance.h"
 
 namespace pcl_floam {
-
-using Matrix12 = Eigen::Matrix<double, 12, 12, Eigen::DontAlign>;
-using Vector12 = Eigen::Matrix<double, 12, 1, Eigen::DontAlign>;
 
 /// What is expected of a sweep.
 struct SweepPrior {

@@ -2,9 +2,10 @@
 /// One scan of any point type, seen without copying it and without templates.
 #pragma once
 
-#include <pcl/common/io.h>
+#include <pcl/for_each_type.h>
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
+#include <pcl/type_traits.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -69,12 +70,32 @@ struct CloudView {
 /// \throws std::invalid_argument if x, y or z is missing or not float32.
 void describeFields(const std::vector<pcl::PCLPointField>& fields, CloudView& view);
 
+/// Lists the fields of a point type, one at each call. `pcl::getFields` does the same, and would bring all of
+/// pcl/common/io.h along.
+template <typename PointT>
+struct FieldLister {
+  std::vector<pcl::PCLPointField>& fields;
+
+  template <typename Tag>
+  void operator()() const
+  {
+    pcl::PCLPointField field;
+    field.name = pcl::traits::name<PointT, Tag>::value;
+    field.offset = pcl::traits::offset<PointT, Tag>::value;
+    field.datatype = pcl::traits::datatype<PointT, Tag>::value;
+    field.count = pcl::traits::datatype<PointT, Tag>::size;
+    fields.push_back(field);
+  }
+};
+
 /// The view of a cloud of any PCL point type with x, y, z.
 template <typename PointT>
 [[nodiscard]] CloudView viewOf(const pcl::PointCloud<PointT>& cloud)
 {
   CloudView view;
-  describeFields(pcl::getFields<PointT>(), view);
+  std::vector<pcl::PCLPointField> fields;
+  pcl::for_each_type<typename pcl::traits::fieldList<PointT>::type>(FieldLister<PointT>{fields});
+  describeFields(fields, view);
   view.data = reinterpret_cast<const std::uint8_t*>(cloud.points.data());
   view.size = cloud.points.size();
   view.stride = sizeof(PointT);

@@ -32,7 +32,7 @@ struct SE3 {
   {
   }
 
-  [[nodiscard]] SE3 inverse() const { return {rotation.transpose(), -(rotation.transpose() * translation)}; }
+  [[nodiscard]] SE3 inverse() const;
 
   /// The 4x4 homogeneous matrix, last row exactly 0 0 0 1.
   template <typename Scalar = double>
@@ -47,17 +47,18 @@ struct SE3 {
   [[nodiscard]] Eigen::Isometry3d isometry() const { return Eigen::Isometry3d(matrix()); }
 
   /// True when every number of it is finite.
-  [[nodiscard]] bool isFinite() const { return rotation.allFinite() && translation.allFinite(); }
+  [[nodiscard]] bool isFinite() const;
 };
 
-[[nodiscard]] inline SE3 operator*(const SE3& a, const SE3& b)
-{
-  return {a.rotation * b.rotation, a.rotation * b.translation + a.translation};
-}
+[[nodiscard]] SE3 operator*(const SE3& a, const SE3& b);
 
+/// Number by number: an expression of Eigen's is longer for each compiler that reads this.
 [[nodiscard]] inline Eigen::Vector3d operator*(const SE3& a, const Eigen::Vector3d& p)
 {
-  return a.rotation * p + a.translation;
+  const auto coordinate = [&](int i) {
+    return a.rotation(i, 0) * p.x() + (a.rotation(i, 1) * p.y() + a.rotation(i, 2) * p.z()) + a.translation[i];
+  };
+  return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
 /// The cross-product matrix: `skew(a) * b == a.cross(b)`.

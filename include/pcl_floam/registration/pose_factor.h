@@ -21,11 +21,7 @@ struct PoseEquations {
   /// \param residual   any unit
   /// \param derivative by the perturbation
   /// \param variance   of the residual, > 0, in its unit squared
-  void add(double residual, const Vector6& derivative, double variance)
-  {
-    information += derivative * derivative.transpose() / variance;
-    gradient += derivative * (residual / variance);
-  }
+  void add(double residual, const Vector6& derivative, double variance);
 };
 
 /// Something that is known of a pose: the ground that a robot stands on, a position from satellites, the brightness of
