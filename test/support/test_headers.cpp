@@ -1,0 +1,1 @@
+// Nothing of its own: it is compiled with the headers that most tests include.
