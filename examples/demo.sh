@@ -11,7 +11,7 @@ here="$(cd "$(dirname "$0")/.." && pwd)"
 bash "$here/cmake/install_packages.sh"
 cmake -S "$here" -B "$here/build/demo" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON \
   -DPCL_FLOAM_BUILD_TESTS=OFF >/dev/null
-targets=(pcl_floam_odometry pcl_floam_evaluate)
+targets=(pcl_floam_odometry)
 if cmake --build "$here/build/demo" --target help | grep -q '^pcl_floam_simulate:'; then
   targets+=(pcl_floam_simulate)
 fi

@@ -143,7 +143,7 @@ TEST(MotionEstimate, WhereAScanTellsNothingNothingIsLearned)
     corrected.predict(1.0);
     corrected.correct(SE3(), all_but_x);
     updated.predict(1.0);
-    MotionEstimate::Matrix12 posterior = updated.covariance();
+    Matrix12 posterior = updated.covariance();
     posterior.bottomRows<11>().setZero();  // all but x is known
     posterior.rightCols<11>().setZero();
     updated.update(SE3(), Vector6::Zero(), posterior);

@@ -72,7 +72,7 @@ def red_tests(fault):
     red = []
     for test in fault.tests:
         try:
-            output = subprocess.run([BUILD / "test" / test], capture_output=True, text=True, timeout=120)
+            output = subprocess.run([BUILD / "test" / test], capture_output=True, text=True, timeout=600)
         except subprocess.TimeoutExpired:
             return red + [test + " (did not end)"]
         if output.returncode != 0:

@@ -122,6 +122,14 @@ TEST_F(OdometryTool, SaysWhetherItWorkedFromScanLinesOrSpaceAndWhy)
   EXPECT_EQ(odometry("scans -o result --structure lines").status, 2);
 }
 
+TEST_F(OdometryTool, ScansWithoutStampsAreAPeriodApart)
+{
+  ASSERT_EQ(odometry("scans -o result --scan-period 0.25 --plot none").status, 0);
+  const std::string times = contentOf(folder.path() / "result" / "poses.tum.txt");
+  const std::size_t last = times.rfind('\n', times.size() - 2) + 1;
+  EXPECT_NEAR(std::stod(times.substr(last)), 0.25 * (kScans - 1), 1e-9);
+}
+
 TEST_F(OdometryTool, DrawsThePictureIfGnuplotIsThereAndSaysSoIfNot)
 {
   const Outcome outcome = odometry("scans -o result --ground-truth truth.txt");
@@ -235,6 +243,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o result --threads 0", "threads is 0"},
       {"scans -o result --max-scans -1", "--max-scans"},
       {"scans -o result --from 8", "--from 8"},
+      {"scans -o result --scan-period -1", "--scan-period"},
       {"scans -o result --sensor sonar", "sonar"},
       {"scans -o result --elevations 1", "2"},
       {"scans -o result --compensation some", "continuous|two-stage|loam|none"},
