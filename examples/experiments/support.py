@@ -51,7 +51,10 @@ class Options:
     def _require_tools(self):
         wanted = ["pcl_floam_odometry", "pcl_floam_evaluate", "pcl_floam_simulate", "pcl_floam_pcl_odometry"]
         build = HERE / "build/demo"
-        if self.arguments.bin == build / "bin" and not all((build / "bin" / tool).exists() for tool in wanted):
+        missing = [tool for tool in wanted if not (self.arguments.bin / tool).exists()]
+        if missing and self.arguments.bin != build / "bin":
+            sys.exit(f"{self.arguments.bin}: build the targets {' '.join(missing)} first")
+        if missing:
             log("building the tools in " + str(build))
             subprocess.run(["cmake", "-S", HERE, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                             "-DCMAKE_UNITY_BUILD=ON", "-DPCL_FLOAM_BUILD_TESTS=OFF"], check=True, stdout=subprocess.DEVNULL)

@@ -59,9 +59,8 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
       ->type_name("X,Y,Z,R,P,Y")
       ->delimiter(',')
       ->expected(6);
-  addNumber(
-      app, "--scan-period", o.scan_period, "S",
-      "time from scan to scan where nothing tells it; 0: 0.1 s\nfor time stamps, and as the points' times span it");
+  addNumber(app, "--scan-period", o.parameters.scan_period, "S",
+            "time from scan to scan; 0 takes it from times.txt,\nand 0.1 s for time stamps without that file");
   addNumber(app, "--vertical-correction", o.parameters.vertical_correction, "DEG",
             "turn every point up by this angle: corrects the\nsensor's calibration; KITTI's needs about 0.205");
 }

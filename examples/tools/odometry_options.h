@@ -21,7 +21,6 @@ struct OdometryOptions {
   std::filesystem::path output;
   std::filesystem::path ground_truth;  ///< empty: none
   std::filesystem::path calibration;   ///< of an HDL-64, or of the ground truth; empty: neither
-  double scan_period = 0.0;            ///< s, of scans without stamps; 0: none is given
   std::size_t from = 0;
   std::size_t max_scans = 0;  ///< 0: all
   std::string sensor = "auto";

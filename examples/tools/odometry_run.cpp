@@ -5,7 +5,6 @@
 #include "progress_bar.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace pcl_floam::tools {
@@ -20,9 +19,8 @@ bool isRecording(const ScanSource& scans)
 /// Reads and tracks scans.
 class ScanTracker {
 public:
-  ScanTracker(OdometryPipeline& odometry, const ScanSource& scans, double period, ProgressBar& progress,
-              RunResult& result)
-      : odometry_(odometry), scans_(scans), period_(period), progress_(progress), result_(result)
+  ScanTracker(OdometryPipeline& odometry, const ScanSource& scans, ProgressBar& progress, RunResult& result)
+      : odometry_(odometry), scans_(scans), progress_(progress), result_(result)
   {
   }
 
@@ -113,9 +111,6 @@ private:
   void takeStamp(std::size_t scan)
   {
     stamp_ = scans_.stamp(scan);
-    if (!stamp_ && period_ > 0.0) {
-      stamp_ = static_cast<double>(scan) * period_;
-    }
     if (isRecording(scans_) && stamp_ && last_stamp_ && !(*stamp_ > *last_stamp_)) {
       tellTime(scan);
     }
@@ -166,7 +161,6 @@ private:
 
   OdometryPipeline& odometry_;
   const ScanSource& scans_;
-  double period_;
   ProgressBar& progress_;
   RunResult& result_;
   pcl::PCLPointCloud2 cloud_;
@@ -207,11 +201,8 @@ ScanRange scanRange(const OdometryOptions& options, std::size_t scans_in_folder)
     throw std::invalid_argument("--from " + std::to_string(options.from) + ": there are only " +
                                 std::to_string(scans_in_folder) + " scans, counted from 0");
   }
-  if (!(options.scan_period >= 0.0) || std::isinf(options.scan_period)) {
-    throw std::invalid_argument("--scan-period: a time of at least 0 s is needed");
-  }
   const std::size_t rest = scans_in_folder - options.from;
-  return {options.from, options.max_scans == 0 ? rest : std::min(rest, options.max_scans), options.scan_period};
+  return {options.from, options.max_scans == 0 ? rest : std::min(rest, options.max_scans)};
 }
 
 std::string timesProblem(const ScanSource& scans, ScanRange range)
@@ -235,12 +226,12 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
 {
   RunResult result;
   ProgressBar progress(range.count, quiet);
-  ScanTracker tracker(odometry, scans, range.period, progress, result);
+  ScanTracker tracker(odometry, scans, progress, result);
   const std::string times_problem = timesProblem(scans, range);
   if (!times_problem.empty()) {
     progress.message(times_problem);
   }
-  PoseClock clock(range.period, range.first);
+  PoseClock clock(odometry.parameters().scan_period, range.first);
   const auto unlessDiskIsFull = [&](const auto& step) {
     try {
       step();

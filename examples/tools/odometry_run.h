@@ -47,7 +47,6 @@ struct RunResult {
 struct ScanRange {
   std::size_t first = 0;
   std::size_t count = 0;
-  double period = 0.0;  ///< s, from scan to scan where these have no stamps; 0: that is not known
 };
 
 /// \throws std::invalid_argument if the folder has no scan of that number.

@@ -51,6 +51,7 @@ Json toJson(const OdometryParameters& p)
                {"structure", toString(p.structure)},
                {"timing", toString(p.timing_source)},
                {"vertical_correction_deg", p.vertical_correction},
+               {"scan_period_s", p.scan_period},
                {"compensation", toString(p.compensation)},
                {"pose_instant", toString(p.pose_instant)},
                {"start_effort", p.start_effort},

@@ -17,6 +17,9 @@ constexpr double kNoTime = 0.01;        // periods; a velocity over less would b
 
 double ScanClock::period() const
 {
+  if (given_period_ > 0.0) {
+    return given_period_;
+  }
   std::array<double, kRemembered> recent = recent_;
   return medianOf(recent.begin(), recent.begin() + std::min(remembered_, kRemembered));
 }

@@ -11,6 +11,9 @@ namespace pcl_floam {
 /// How far apart scans are, in periods of the sensor: 1 from one scan to the next, 2 when one is missing.
 class ScanClock {
 public:
+  /// \param period s; 0 to take it from the stamps
+  explicit ScanClock(double period = 0.0) : given_period_(period) {}
+
   /// Periods since the last scan: 1 without a stamp, which the next stamp does not count again; 0 for a stamp that does
   /// not advance, but as without one for those that follow and do not either, or if none ever did. A hundred and more,
   /// forwards or back, mean that the clock was set: that is 1, too.
@@ -26,6 +29,7 @@ public:
 private:
   void remember(double elapsed);
 
+  double given_period_;
   std::optional<double> last_stamp_;
   int standing_ = 0;        ///< the last stamps that did not advance
   bool stood_ = false;      ///< the one before the last did not

@@ -37,6 +37,7 @@ void validate(const OdometryParameters& p)
 {
   const ParameterCheck check("odometry");
   check.range("vertical_correction", p.vertical_correction, -10.0, 10.0);
+  check.atLeast("scan_period", p.scan_period, 0.0);
   check.range("threads", p.threads, 1, 1024);
   check.range("start_effort", p.start_effort, 2, 1000);
   check.atLeast("keyframe translation", p.keyframe.translation, 0.0);

@@ -21,7 +21,8 @@
 namespace pcl_floam {
 
 struct OdometryRun {
-  OdometryRun(const OdometryParameters& p, const OdometryComponents& c) : parameters(p), components(c), map_building(p)
+  OdometryRun(const OdometryParameters& p, const OdometryComponents& c)
+      : parameters(p), components(c), map_building(p), clock(p.scan_period)
   {
   }
 

@@ -20,7 +20,7 @@ PoseEquations PoseFactors::at(const SE3& target_T_source, const Eigen::Vector3d&
   for (const PoseFactor::ConstPtr& factor : factors) {
     factor->addTo(world_T_source, sum);
   }
-  const Matrix6 from_world = product(turnOf(world_T_target.rotation), leverOf(-arm)).transpose();
+  const Matrix6 from_world = product(turnOf(world_T_target.rotation), leverOf(arm)).transpose();
   return {propagated(from_world, sum.information), from_world * sum.gradient};
 }
 

@@ -243,7 +243,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o result --threads 0", "threads is 0"},
       {"scans -o result --max-scans -1", "--max-scans"},
       {"scans -o result --from 8", "--from 8"},
-      {"scans -o result --scan-period -1", "--scan-period"},
+      {"scans -o result --scan-period -1", "scan_period is -1"},
       {"scans -o result --sensor sonar", "sonar"},
       {"scans -o result --elevations 1", "2"},
       {"scans -o result --compensation some", "continuous|two-stage|loam|none"},

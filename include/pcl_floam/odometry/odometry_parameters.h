@@ -26,6 +26,9 @@ struct OdometryParameters {
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the
   /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205.
   double vertical_correction = 0.0;
+  /// Seconds from one sweep to the next; 0 takes it from the scans' stamps. Matters only to scans whose
+  /// time field spans less than the period, and to gaps.
+  double scan_period = 0.0;
   FeatureParameters features;
   CompensationMode compensation = CompensationMode::continuous;
   PoseInstant pose_instant = PoseInstant::end;  ///< of the poses given out
