@@ -78,12 +78,6 @@ Matrix12 inverseOf(const Matrix12& positive)
   return inverse(positive);
 }
 
-Vector12 solve(const Matrix12& positive, const Vector12& right)
-{
-  const Square square = positive;
-  return square.ldlt().solve(right);
-}
-
 double squaredDeviations(const Vector6& error, const Matrix6& covariance)
 {
   const Square square = covariance;

@@ -20,7 +20,6 @@ using Vector12 = Eigen::Matrix<double, 12, 1, Eigen::DontAlign>;
 /// \param positive symmetric and positive definite
 [[nodiscard]] Matrix6 inverseOf(const Matrix6& positive);
 [[nodiscard]] Matrix12 inverseOf(const Matrix12& positive);
-[[nodiscard]] Vector12 solve(const Matrix12& positive, const Vector12& right);
 
 /// Of an error, in standard deviations: e^T P^-1 e.
 [[nodiscard]] double squaredDeviations(const Vector6& error, const Matrix6& covariance);

@@ -1,7 +1,6 @@
 #include "odometry/first_scans.h"
 
 #include "common/covariance.h"
-
 #include "odometry/start.h"
 
 #include <algorithm>

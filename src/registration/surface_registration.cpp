@@ -3,6 +3,8 @@
 #include "registration/net_information.h"
 #include "registration/surface_residuals.h"
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 
