@@ -21,7 +21,7 @@ Sweep backwards(const std::vector<Sweep>& kept, std::size_t k, std::size_t count
 
 BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
                            const TrackSettings& settings)
-    : back_(settings), count_(forwards.size())
+    : back_(settings), count_(forwards.size()), in_map_(count_)
 {
   std::vector<Sweep> sweeps;
   std::vector<SE3> last;
@@ -44,6 +44,14 @@ void BackwardPass::step(const std::vector<Sweep>& kept)
   }
   back_.updateMap(sweep);
   found_[left_] = back_.pose();
+}
+
+void BackwardPass::takeNext(const Sweep& sweep, const SweepPose& pose, bool is_keyframe)
+{
+  ++in_map_;
+  if (is_keyframe) {
+    back_.insert(sweep, pose);
+  }
 }
 
 std::vector<SweepPose> BackwardPass::poses(std::vector<SweepPose> forwards) const

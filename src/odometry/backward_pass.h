@@ -9,7 +9,8 @@
 
 namespace pcl_floam {
 
-/// Finds the poses of the first sweeps with the map that later ones make: those know better how the sensor moved.
+/// Finds the poses of the first sweeps with the map that later ones make: those know better how the sensor moved. Then
+/// that map takes in the sweeps that have come since.
 class BackwardPass {
 public:
   static constexpr std::size_t kTrusted = 4;  ///< last poses, from which the others are found
@@ -21,14 +22,23 @@ public:
   [[nodiscard]] bool isDone() const { return left_ == 0; }
   /// Registers the next sweep before.
   void step(const std::vector<Sweep>& kept);
+  /// Whether all were found.
+  [[nodiscard]] bool hasFound() const { return isDone() && !found_.empty(); }
   /// Of all sweeps, those from the trusted ones on as they were found forwards; none if one was not found.
   [[nodiscard]] std::vector<SweepPose> poses(std::vector<SweepPose> forwards) const;
+
+  /// So many sweeps, from the first one on, are in its map once it \ref hasFound.
+  [[nodiscard]] std::size_t inMap() const { return in_map_; }
+  /// The next one comes in, if it is a keyframe.
+  void takeNext(const Sweep& sweep, const SweepPose& pose, bool is_keyframe);
+  [[nodiscard]] Track& track() { return back_; }
 
 private:
   Track back_;
   std::vector<SweepPose> found_;  // before the trusted ones
   std::size_t count_ = 0;         // of sweeps when it began
   std::size_t left_ = 0;
+  std::size_t in_map_ = 0;
 };
 
 }  // namespace pcl_floam

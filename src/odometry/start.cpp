@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -104,6 +105,7 @@ void Start::beginRevision(Hypotheses& hypotheses)
     first.resize(std::min(first.size(), kRevised));
     revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
   }
+  keyframes_ = keyframesAmong(middlesOf(hypotheses.front().poses), hypotheses.front().track.settings());
 }
 
 void Start::revise(Hypotheses& hypotheses)
@@ -116,63 +118,58 @@ void Start::revise(Hypotheses& hypotheses)
   };
   revisions_.erase(std::remove_if(revisions_.begin(), revisions_.end(), isLost), revisions_.end());
   const TrackSettings& settings = hypotheses.front().track.settings();
-  if (std::all_of(revisions_.begin(), revisions_.end(), [](const Revision& r) { return r.pass.isDone(); })) {
-    return settle(hypotheses);
-  }
   const int passes = static_cast<int>(revisions_.size());
   const int each = (settings.start_effort + passes - 1) / passes;
   eachSideBySide(settings.threads, revisions_.size(), [&](std::size_t i) {
-    for (int n = 0; n < each && !revisions_[i].pass.isDone(); ++n) {
-      revisions_[i].pass.step(kept_);
-    }
+    const auto own = std::find_if(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revisions_[i].number; });
+    goOn(revisions_[i].pass, own->poses, each);
   });
+  if (std::all_of(revisions_.begin(), revisions_.end(), [this](const Revision& r) { return isDone(r.pass); })) {
+    settle(hypotheses);
+  }
 }
 
-/// The first sweeps go where the last ones say they were: one track after the other, the best one last, since each map
-/// takes about as long as a few sweeps.
+/// Where the first sweeps were not found, or were too many to be kept, the map stays as it is.
+bool Start::isDone(const BackwardPass& pass) const
+{
+  return pass.isDone() && (!pass.hasFound() || !keeps_ || pass.inMap() == kept_.size());
+}
+
+void Start::goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int registrations) const
+{
+  constexpr double kTakeOne = 0.25;  // registrations, which take as long as a map does to take in a sweep
+  for (double left = registrations; left > 0.0 && !isDone(pass);) {
+    if (!pass.isDone()) {
+      pass.step(kept_);
+      left -= 1.0;
+    } else {
+      const std::size_t next = pass.inMap();
+      pass.takeNext(kept_[next], poses[next], keyframes_[next]);
+      left -= kTakeOne;
+    }
+  }
+}
+
+/// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made.
 void Start::settle(Hypotheses& hypotheses)
 {
-  std::vector<Hypothesis>& all = hypotheses.all();
-  const auto revisionOf = [this](const Hypothesis& hypothesis) {
-    return std::find_if(revisions_.begin(), revisions_.end(),
-                        [&](const Revision& r) { return r.number == hypothesis.number; });
-  };
-  if (keyframes_.size() < kept_.size()) {
-    const std::vector<SweepPose> revised = revisionOf(all[0])->pass.poses(all[0].poses);
-    std::vector<SE3> first = middlesOf(revised.empty() ? all[0].poses : revised);
-    first.resize(kept_.size() - keyframes_.size());
-    const std::vector<bool> among_first = keyframesAmong(first, all[0].track.settings());
-    keyframes_.insert(keyframes_.begin(), among_first.begin(), among_first.end());
-  }
-  const auto isLeft = [&](const Hypothesis& hypothesis) { return !revisionOf(hypothesis)->is_done; };
-  const auto next = std::find_if(all.rbegin(), all.rend(), isLeft);
-  if (next != all.rend()) {
-    const auto revision = revisionOf(*next);
-    makeAgain(*next, revision->pass);
-    if (leaves_no_trace_) {
-      next->track.forgetAlong(next->last.report.weak_directions, static_cast<double>(next->poses.size()));
+  for (Hypothesis& hypothesis : hypotheses.all()) {
+    BackwardPass& pass = std::find_if(revisions_.begin(), revisions_.end(), [&](const Revision& r) {
+                           return r.number == hypothesis.number;
+                         })->pass;
+    if (pass.hasFound()) {
+      hypothesis.poses = pass.poses(hypothesis.poses);
+      if (keeps_) {
+        hypothesis.track.takeMapOf(std::move(pass.track()));
+      }
     }
-    revision->is_done = true;
-  }
-  is_settled_ = std::none_of(all.begin(), all.end(), isLeft);
-  for (Hypothesis& hypothesis : all) {
+    if (leaves_no_trace_) {
+      hypothesis.track.forgetAlong(hypothesis.last.report.weak_directions,
+                                   static_cast<double>(hypothesis.poses.size()));
+    }
     hypothesis.track.beginEvidence();  // until the maps have taken in the same
   }
-}
-
-/// Its map, with poses that are known better. If they are not, it stays as it is, unless there were several hypotheses:
-/// their maps must not differ in what they took in. It does, too, if that was too much to be kept.
-void Start::makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const
-{
-  const std::vector<SweepPose> revised = pass.poses(hypothesis.poses);
-  if (!revised.empty()) {
-    hypothesis.poses = revised;
-  } else if (revisions_.size() == 1) {
-    return;
-  }
-  if (keeps_) {
-    hypothesis.track.makeMap(kept_, hypothesis.poses, keyframes_);
-  }
+  is_settled_ = true;
 }
 
 }  // namespace pcl_floam

@@ -42,7 +42,6 @@ private:
   struct Revision {
     std::size_t number = 0;  // of the hypothesis
     BackwardPass pass;
-    bool is_done = false;
   };
 
   [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
@@ -50,14 +49,15 @@ private:
   void follow(const Sweep& sweep, Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);
   void revise(Hypotheses& hypotheses);
+  [[nodiscard]] bool isDone(const BackwardPass& pass) const;
+  void goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int registrations) const;
   void settle(Hypotheses& hypotheses);
-  void makeAgain(Hypothesis& hypothesis, const BackwardPass& pass) const;
 
   std::vector<Sweep> kept_;  // from the first one on
   bool keeps_ = true;        // all of them
   std::optional<CandidateMotions> candidates_;
   std::vector<Revision> revisions_;  // once it is decided how the sensor moved
-  std::vector<bool> keyframes_;      // those kept since then that the maps took in; in the end, of all
+  std::vector<bool> keyframes_;      // of the kept ones, which then are those that the maps took in
   bool leaves_no_trace_ = false;
   bool was_hinted_ = false;
   bool is_settled_ = false;

@@ -199,8 +199,7 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
 void Track::updateMap(const Sweep& sweep, bool takes_it)
 {
   if (takes_it) {
-    map_->insert(sweep, pose_);
-    keyframe_ = pose_.middle;
+    insert(sweep, pose_);
   }
   is_keyframe_ = false;
 }

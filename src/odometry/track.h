@@ -48,9 +48,11 @@ public:
   /// \param keyframes of which the map is made
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
 
-  /// Its map is made anew of sweeps whose poses are known better by now, the last of which is its own.
-  void makeMap(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
-               const std::vector<bool>& keyframes);
+  /// Its map takes in a sweep whose pose is known.
+  void insert(const Sweep& sweep, const SweepPose& pose);
+
+  /// Its map is from now on that of another track, which was made of sweeps whose poses are known better.
+  void takeMapOf(Track&& other);
 
   /// Begins in a map that was made before, of which the pose is roughly known.
   SurfaceRegistration begin(const Sweep& sweep, TrackMap map, const SE3& guess, bool keeps_map);

@@ -2,6 +2,7 @@
 #include "odometry/track.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -94,22 +95,21 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
       motion_.correct(poses[i], covarianceOf(kKnown));
     }
     if (keyframes[i]) {
-      map_->insert(sweeps[i], pose_);
-      keyframe_ = poses[i];
+      insert(sweeps[i], pose_);
     }
   }
 }
 
-void Track::makeMap(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
-                    const std::vector<bool>& keyframes)
+void Track::insert(const Sweep& sweep, const SweepPose& pose)
 {
-  beginMap();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (keyframes[i]) {
-      map_->insert(sweeps[i], poses[i]);
-      keyframe_ = poses[i].middle;
-    }
-  }
+  map_->insert(sweep, pose);
+  keyframe_ = pose.middle;
+}
+
+void Track::takeMapOf(Track&& other)
+{
+  map_ = std::move(other.map_);
+  keyframe_ = other.keyframe_;
 }
 
 }  // namespace pcl_floam
