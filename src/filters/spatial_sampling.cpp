@@ -122,18 +122,11 @@ void SpatialSampling::sample(const ScanReturns& returns, double side, std::vecto
 
 void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample)
 {
-  this->sample(points, side, points.size(), sample);
-}
-
-/// \param enough points, after which it need not go on
-void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::size_t enough,
-                             std::vector<ScanPoint>& sample)
-{
   sample.clear();
   forget();
   std::array<float, ReturnBatch::kMost> x, y, z;
   std::array<std::uint64_t, ReturnBatch::kMost> cubes;
-  for (std::size_t begin = 0; begin < points.size() && sample.size() < enough; begin += ReturnBatch::kMost) {
+  for (std::size_t begin = 0; begin < points.size(); begin += ReturnBatch::kMost) {
     const std::size_t count = std::min(ReturnBatch::kMost, points.size() - begin);
     for (std::size_t n = 0; n < count; ++n) {
       x[n] = points[begin + n].x;
@@ -149,21 +142,45 @@ void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, 
   }
 }
 
-double SpatialSampling::sideFor(const std::vector<ScanPoint>& points, std::size_t cells)
+/// Whether places fill more than so many cubes.
+bool SpatialSampling::fillMore(const Places& places, double side, std::size_t cells)
+{
+  forget();
+  std::array<std::uint64_t, ReturnBatch::kMost> cubes;
+  std::size_t filled = 0;
+  for (std::size_t begin = 0; begin < places.x.size() && filled <= cells; begin += cubes.size()) {
+    const std::size_t count = std::min(cubes.size(), places.x.size() - begin);
+    findCubes(count, &places.x[begin], &places.y[begin], &places.z[begin], static_cast<float>(1.0 / side),
+              cubes.data());
+    for (std::size_t n = 0; n < count; ++n) {
+      filled += isFirst(cubes[n]) ? 1 : 0;
+    }
+  }
+  return filled > cells;
+}
+
+double SpatialSampling::sideFor(const ScanReturns& returns, double per_root)
 {
   constexpr double kSmallest = 1e-3;  // m: finer than any lidar measures
   constexpr double kGreatest = 1e3;   // m: farther than any lidar sees
   constexpr int kHalvings = 16;       // to a part in 5,000
-  if (points.empty()) {
+  Places places;
+  ReturnReader reader(returns);
+  for (ReturnBatch batch; reader.next(batch);) {
+    const auto count = static_cast<std::ptrdiff_t>(batch.count);
+    places.x.insert(places.x.end(), batch.x.begin(), batch.x.begin() + count);
+    places.y.insert(places.y.end(), batch.y.begin(), batch.y.begin() + count);
+    places.z.insert(places.z.end(), batch.z.begin(), batch.z.begin() + count);
+  }
+  if (places.x.empty()) {
     return 0.0;
   }
+  const auto cells = static_cast<std::size_t>(per_root * std::sqrt(static_cast<double>(places.x.size())));
   double small = std::log(kSmallest);
   double great = std::log(kGreatest);
-  std::vector<ScanPoint> taken;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (small + great);
-    sample(points, std::exp(middle), cells + 1, taken);
-    (taken.size() > cells ? small : great) = middle;
+    (fillMore(places, std::exp(middle), cells) ? small : great) = middle;
   }
   return std::exp(great);
 }

@@ -52,6 +52,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = round + 1 == look.rounds;
+    problem.max_iterations = round + 1 == look.rounds ? 12 : 3;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;

@@ -1,6 +1,5 @@
 #include "odometry/tracker.h"
 
-#include <cmath>
 #include <utility>
 
 namespace pcl_floam {
@@ -54,10 +53,7 @@ void Tracker::place(const SE3& pose)
 void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
 {
   if (settings_.side == 0.0) {
-    std::vector<ScanPoint> points;
-    collectPoints(returns, points);
-    const double cells = kCellsPerRoot * std::sqrt(static_cast<double>(points.size()));
-    settings_.side = sampling_.sideFor(points, static_cast<std::size_t>(cells));
+    settings_.side = sampling_.sideFor(returns, kCellsPerRoot);
   }
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
   choosePoints(sweep);

@@ -55,14 +55,14 @@ protected:
 
   pcl_floam::Sweep sampled(const Sweep& simulated)
   {
-    constexpr std::size_t kCells = 2000;
+    constexpr double kCellsPerRoot = 12.0;
     constexpr double kMapSpacing = 0.3;
     const CloudView view = viewOf(simulated.cloud);
     PreparedScan scan;
     scan.findStructure(view, {}, 0.1);
     scan.takeFeatures(view, {});
     scan.takePoints(view, {});
-    settings_.side = settings_.side > 0.0 ? settings_.side : sampling_.sideFor(scan.points, kCells);
+    settings_.side = settings_.side > 0.0 ? settings_.side : sampling_.sideFor(scan.returnsOf(view, {}), kCellsPerRoot);
     pcl_floam::Sweep sweep;
     sampling_.sample(scan.points, kMapSpacing * settings_.side, sweep.dense);
     sampling_.sample(sweep.dense, settings_.side, sweep.sample);

@@ -61,8 +61,8 @@ public:
   /// Of a scan, whose other points need not be listed, nor their times be found.
   void sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample);
 
-  /// The side of which the points fill about \p cells cubes, m; 0 without points.
-  [[nodiscard]] double sideFor(const std::vector<ScanPoint>& points, std::size_t cells);
+  /// The side of cubes of which n returns fill about \p per_root times the root of n, m; 0 without returns.
+  [[nodiscard]] double sideFor(const ScanReturns& returns, double per_root);
 
 private:
   /// Some cubes, by what their keys have in common, and a bit for each that was seen.
@@ -71,7 +71,11 @@ private:
     std::uint64_t cubes = 0;
   };
 
-  void sample(const std::vector<ScanPoint>& points, double side, std::size_t enough, std::vector<ScanPoint>& sample);
+  struct Places {
+    std::vector<float> x, y, z;
+  };
+
+  [[nodiscard]] bool fillMore(const Places& places, double side, std::size_t cells);
   void addFirst(const struct ReturnBatch& batch, float inverse_side, std::vector<ScanPoint>& sample);
   [[nodiscard]] bool isFirst(std::uint64_t cube);
   void forget();
