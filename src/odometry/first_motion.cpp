@@ -97,6 +97,7 @@ std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<Firs
       reports[i] = tracks_[part].findMotion(first_, second_, looks[i]).report;
       evidence[i] = tracks_[part].evidence();
     }
+    tracks_[part].releaseMap();
   });
   for (std::size_t i = 0; i < looks.size(); ++i) {
     if (reports[i].hasConverged()) {

@@ -26,7 +26,9 @@ SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& 
 {
   kept_.push_back(second);
   was_hinted_ = kept_.front().hint.has_value() || second.hint.has_value();
-  candidates_.emplace(kept_, settings);
+  TrackSettings own = settings;
+  own.spare_maps = spare_maps_;
+  candidates_.emplace(kept_, own);
   SurfaceRegistration found = candidates_->followFirst(kept_, hypotheses);
   if (hypotheses.empty()) {
     kept_.pop_back();

@@ -6,6 +6,7 @@
 #include "odometry/candidate_motions.h"
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -53,6 +54,7 @@ private:
   void goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int registrations) const;
   void settle(Hypotheses& hypotheses);
 
+  std::shared_ptr<SpareMaps> spare_maps_ = std::make_shared<SpareMaps>();
   std::vector<Sweep> kept_;  // from the first one on
   bool keeps_ = true;        // all of them
   std::optional<CandidateMotions> candidates_;

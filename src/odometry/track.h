@@ -48,6 +48,9 @@ public:
   /// \param keyframes of which the map is made
   void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
 
+  /// Another track may have the memory of its map.
+  void releaseMap() { map_.reset(); }
+
   /// Its map takes in a sweep whose pose is known.
   void insert(const Sweep& sweep, const SweepPose& pose);
 

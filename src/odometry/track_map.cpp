@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <memory>
 #include <numeric>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -34,19 +36,58 @@ void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const Swe
 
 }  // namespace
 
-TrackMap::TrackMap(const TrackSettings& settings) : horizon_(settings.horizon)
+std::optional<SpareMaps::Map> SpareMaps::take()
 {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (maps_.empty()) {
+    return std::nullopt;
+  }
+  std::optional<Map> map = std::move(maps_.back());
+  maps_.pop_back();
+  return map;
+}
+
+void SpareMaps::give(Map map)
+{
+  map.space->clear();
+  map.edges.clear();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  maps_.push_back(std::move(map));
+}
+
+TrackMap::TrackMap(const TrackSettings& settings) : horizon_(settings.horizon), spare_(settings.spare_maps)
+{
+  const std::shared_ptr<SpareMaps> spare = spare_.lock();
+  std::optional<SpareMaps::Map> map = spare ? spare->take() : std::nullopt;
+  if (map) {
+    space_ = std::move(map->space);
+    edges_ = std::move(map->edges);
+    return;
+  }
   const SurfaceMap::ConstPtr& own = settings.components.map;
   space_ = own ? own->makeEmpty(settings.side) : std::make_unique<VoxelPyramid>(settings.side);
 }
 
-TrackMap::TrackMap(const TrackMap& other) : space_(other.space_->copy()), edges_(other.edges_), horizon_(other.horizon_)
+TrackMap::TrackMap(const TrackMap& other)
+    : space_(other.space_->copy()), edges_(other.edges_), horizon_(other.horizon_), spare_(other.spare_)
 {
 }
 
-TrackMap& TrackMap::operator=(const TrackMap& other)
+TrackMap& TrackMap::operator=(TrackMap other) noexcept
 {
-  return *this = TrackMap(other);
+  space_.swap(other.space_);
+  std::swap(edges_, other.edges_);
+  std::swap(horizon_, other.horizon_);
+  spare_.swap(other.spare_);
+  return *this;
+}
+
+TrackMap::~TrackMap()
+{
+  const std::shared_ptr<SpareMaps> spare = spare_.lock();
+  if (space_ && spare) {
+    spare->give({std::move(space_), std::move(edges_)});
+  }
 }
 
 void TrackMap::clear()

@@ -8,9 +8,29 @@
 #include "odometry/track_settings.h"
 
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 namespace pcl_floam {
+
+/// Maps that nobody needs any more, for those who need one: the memory of a map takes longer to get than a sweep to
+/// register.
+class SpareMaps {
+public:
+  struct Map {
+    std::unique_ptr<SurfaceMap> space;
+    EdgeLines edges;
+  };
+
+  /// Empty; nothing if there is none.
+  [[nodiscard]] std::optional<Map> take();
+  void give(Map map);
+
+private:
+  std::mutex mutex_;
+  std::vector<Map> maps_;
+};
 
 /// Space (all points) and edges (the paper's features).
 class TrackMap {
@@ -18,9 +38,8 @@ public:
   explicit TrackMap(const TrackSettings& settings);
   TrackMap(const TrackMap& other);
   TrackMap(TrackMap&& other) noexcept = default;
-  TrackMap& operator=(const TrackMap& other);
-  TrackMap& operator=(TrackMap&& other) noexcept = default;
-  ~TrackMap() = default;
+  TrackMap& operator=(TrackMap other) noexcept;
+  ~TrackMap();
 
   void insert(const Sweep& sweep, const SweepPose& pose);
 
@@ -37,6 +56,7 @@ private:
   std::unique_ptr<SurfaceMap> space_;
   EdgeLines edges_;
   double horizon_;
+  std::weak_ptr<SpareMaps> spare_;  // where it goes in the end
 };
 
 }  // namespace pcl_floam

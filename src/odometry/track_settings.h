@@ -6,6 +6,8 @@
 #include <pcl_floam/odometry/odometry_components.h>
 #include <pcl_floam/registration/registration_parameters.h>
 
+#include <memory>
+
 namespace pcl_floam {
 
 struct TrackSettings {
@@ -15,6 +17,7 @@ struct TrackSettings {
   int threads = 1;
   int start_effort = 4;  // registrations of one sweep's share of a start, beyond its own
   OdometryComponents components = {};
+  std::weak_ptr<class SpareMaps> spare_maps = {};  // of which maps are made, and where they go in the end
   double side = 0.0;  // m, of the map's finest cells; 0: not known yet
   /// Of time in sweeps of which it is not known: 1 as their points have it, -1 against it, 0 if they are of one
   /// instant.
