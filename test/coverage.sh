@@ -18,6 +18,7 @@ find build/coverage -name '*.gcda' -delete
 for program in $(programs); do
   "$(find build/coverage/test -type f -name "$program" -perm -u+x)" --gtest_brief=1 || echo "$program failed" >&2
 done
+PCL_FLOAM_TEST_FEATURES=1 build/coverage/test/test_odometry --gtest_brief=1 || echo "test_odometry by features failed" >&2
 # Branches that only an exception takes, as of an allocation that fails, are not counted.
 gcovr --root . --filter include/ --filter src/ --exclude-throw-branches --exclude-unreachable-branches \
   --gcov-ignore-parse-errors --print-summary --sort-percentage "$@" build/coverage

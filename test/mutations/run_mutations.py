@@ -52,8 +52,18 @@ def copy_sources():
             target.chmod(source.stat().st_mode)
 
 
+def program(test):
+    return test.rpartition(":")[2]
+
+
+def environment(test):
+    name, is_set, value = test.rpartition(":")[0].partition("=")
+    return os.environ | ({name: value} if is_set else {})
+
+
 def build(tests):
-    return subprocess.run(["ninja", "-C", BUILD, "-j", os.environ.get("JOBS", "1"), *tests], capture_output=True, text=True)
+    return subprocess.run(["ninja", "-C", BUILD, "-j", os.environ.get("JOBS", "1"), *map(program, tests)],
+                          capture_output=True, text=True)
 
 
 def configure(faults):
@@ -72,7 +82,8 @@ def red_tests(fault):
     red = []
     for test in fault.tests:
         try:
-            output = subprocess.run([BUILD / "test" / test], capture_output=True, text=True, timeout=600)
+            output = subprocess.run([BUILD / "test" / program(test)], env=environment(test), capture_output=True, text=True,
+                                    timeout=600)
         except subprocess.TimeoutExpired:
             return red + [test + " (did not end)"]
         if output.returncode != 0:

@@ -77,10 +77,12 @@ TEST(OdometryDisturbed, StampsTellOfAGap)
   }
 }
 
-#ifndef PCL_FLOAM_TEST_FEATURES
 /// They fit a map here and there by chance, and must not enter it.
 TEST(OdometryDisturbed, PointsAnywhereAreNoPose)
 {
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
   std::mt19937 random(4);
   std::uniform_real_distribution<float> anywhere(-60.0F, 60.0F);
   Odometry<PointXYZIRT> odometry(defaults());
@@ -103,6 +105,9 @@ TEST(OdometryDisturbed, PointsAnywhereAreNoPose)
 /// Further from where it was expected than any motion tells of.
 TEST(OdometryDisturbed, IsFoundAgainAfterAJump)
 {
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
   const auto jumpingPath = [](double t) {
     return t <= 14.0 ? steadyPath(t) : steadyPath(t) * SE3(expSO3({0.0, 0.0, 0.2}), Eigen::Vector3d(-0.5, 0.8, 0.0));
   };
@@ -116,6 +121,9 @@ TEST(OdometryDisturbed, IsFoundAgainAfterAJump)
 /// The same scan may come twice, with its time, and a time may be missing or stand still.
 TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
 {
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
   Odometry<PointXYZIRT> odometry(defaults());
   for (int k = 0; k < kScans; ++k) {
     std::optional<double> stamp = 100.0 + 0.1 * k;
@@ -129,7 +137,6 @@ TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
     EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << "scan " << k;
   }
 }
-#endif
 
 TEST(OdometryDisturbed, StartsWithTheFirstUsableScan)
 {

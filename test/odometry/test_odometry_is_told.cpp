@@ -36,10 +36,12 @@ TEST(OdometryIsTold, LocalizesInAMapMadeBefore)
   }
 }
 
-#ifndef PCL_FLOAM_TEST_FEATURES
 /// Two of three returns come from where the map has nothing.
 TEST(OdometryIsTold, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
 {
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
   Odometry<PointXYZIRT> mapping(defaults());
   for (int k = 0; k < kScans; ++k) {
     mapping.track(sweep(steadyPath, k));
@@ -60,7 +62,6 @@ TEST(OdometryIsTold, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
     EXPECT_EQ(report.reason.empty(), !is_strange);
   }
 }
-#endif
 
 TEST(OdometryIsTold, AMapToLocalizeInMustHoldSomething)
 {

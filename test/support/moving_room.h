@@ -5,6 +5,7 @@
 
 #include <pcl_floam/odometry/odometry.h>
 
+#include <cstdlib>
 #include <functional>
 
 namespace pcl_floam::test {
@@ -12,12 +13,15 @@ namespace pcl_floam::test {
 using Cloud = pcl::PointCloud<PointXYZIRT>;
 
 /// These tests are run for each engine.
+inline bool isByFeatures()
+{
+  return std::getenv("PCL_FLOAM_TEST_FEATURES") != nullptr;
+}
+
 inline OdometryParameters defaults()
 {
   OdometryParameters parameters;
-#ifdef PCL_FLOAM_TEST_FEATURES
-  parameters.engine = OdometryEngine::features;
-#endif
+  parameters.engine = isByFeatures() ? OdometryEngine::features : OdometryEngine::surfaces;
   return parameters;
 }
 
