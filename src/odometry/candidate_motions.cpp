@@ -86,7 +86,7 @@ void CandidateMotions::suppose()
 SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
 {
   constexpr double kOff = 0.25;  // m: what the likely motions may still be off, whichever way time runs
-  constexpr int kRounds = 1;
+  constexpr int kRounds = 2;
   const Candidate candidate = waiting_.front();
   waiting_.pop_front();
   Track track(directions_[candidate.direction]);
