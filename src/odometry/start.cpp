@@ -123,7 +123,8 @@ void Start::revise(Hypotheses& hypotheses)
   const int passes = static_cast<int>(revisions_.size());
   const int each = (settings.start_effort + passes - 1) / passes;
   eachSideBySide(settings.threads, revisions_.size(), [&](std::size_t i) {
-    const auto own = std::find_if(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revisions_[i].number; });
+    const auto own =
+        std::find_if(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revisions_[i].number; });
     goOn(revisions_[i].pass, own->poses, each);
   });
   if (std::all_of(revisions_.begin(), revisions_.end(), [this](const Revision& r) { return isDone(r.pass); })) {

@@ -18,7 +18,7 @@ struct TrackSettings {
   int start_effort = 4;  // registrations of one sweep's share of a start, beyond its own
   OdometryComponents components = {};
   std::weak_ptr<class SpareMaps> spare_maps = {};  // of which maps are made, and where they go in the end
-  double side = 0.0;  // m, of the map's finest cells; 0: not known yet
+  double side = 0.0;                               // m, of the map's finest cells; 0: not known yet
   /// Of time in sweeps of which it is not known: 1 as their points have it, -1 against it, 0 if they are of one
   /// instant.
   double direction = 0.0;
