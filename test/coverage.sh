@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 # The programs of the library's tests; those of the simulator and of other people's builds cover nothing more.
 programs() {
   sed -n 's/^ *pcl_floam_add\(_long\)\?_test(\([a-z0-9_]\+\).*/\2/p' test/CMakeLists.txt test/fuzz/CMakeLists.txt |
-    grep -vE '^test_(simulation|other_alignment|tool_parts|registration_own_point_types)$'
+    grep -vE '^test_(simulation|other_alignment|tool_parts|registration_own_point_types|registration_visualizer)$'
 }
 
 cmake -S . -B build/coverage -G Ninja -DCMAKE_BUILD_TYPE=None -DPCL_FLOAM_INSTALL=OFF \

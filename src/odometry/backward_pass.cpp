@@ -1,6 +1,7 @@
 #include "odometry/backward_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pcl_floam {
 
@@ -17,11 +18,18 @@ Sweep backwards(const std::vector<Sweep>& kept, std::size_t k, std::size_t count
   return sweep;
 }
 
+/// On the way back nothing is forgotten that lies ahead.
+TrackSettings withoutHorizon(TrackSettings settings)
+{
+  settings.horizon = HUGE_VAL;
+  return settings;
+}
+
 }  // namespace
 
 BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
                            const TrackSettings& settings)
-    : back_(settings), count_(forwards.size()), in_map_(count_)
+    : back_(withoutHorizon(settings)), count_(forwards.size()), in_map_(count_)
 {
   std::vector<Sweep> sweeps;
   std::vector<SE3> last;

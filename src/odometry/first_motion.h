@@ -39,7 +39,7 @@ private:
 
   std::vector<RegistrationReport> lookAt(const std::vector<FirstLook>& looks);
 
-  std::vector<Track> tracks_;     // one a thread: its memory serves one look after the other
+  std::vector<Track> tracks_;     // one a thread
   Sweep first_, second_;          // thinned
   std::vector<FirstLook> looks_;  // along what is open
   std::size_t looked_ = 0;

@@ -153,18 +153,21 @@ void Start::goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int re
   }
 }
 
-/// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made.
+/// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made: all
+/// or none, since maps must differ in nothing but what is judged by them.
 void Start::settle(Hypotheses& hypotheses)
 {
+  const bool take_maps = keeps_ && std::all_of(revisions_.begin(), revisions_.end(),
+                                               [](const Revision& revision) { return revision.pass.hasFound(); });
   for (Hypothesis& hypothesis : hypotheses.all()) {
     BackwardPass& pass = std::find_if(revisions_.begin(), revisions_.end(), [&](const Revision& r) {
                            return r.number == hypothesis.number;
                          })->pass;
     if (pass.hasFound()) {
       hypothesis.poses = pass.poses(hypothesis.poses);
-      if (keeps_) {
-        hypothesis.track.takeMapOf(std::move(pass.track()));
-      }
+    }
+    if (take_maps) {
+      hypothesis.track.takeMapOf(std::move(pass.track()));
     }
     if (leaves_no_trace_) {
       hypothesis.track.forgetAlong(hypothesis.last.report.weak_directions,

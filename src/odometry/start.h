@@ -59,7 +59,7 @@ private:
   bool keeps_ = true;        // all of them
   std::optional<CandidateMotions> candidates_;
   std::vector<Revision> revisions_;  // once it is decided how the sensor moved
-  std::vector<bool> keyframes_;      // of the kept ones, which then are those that the maps took in
+  std::vector<bool> keyframes_;      // of the sweeps that are kept: what is made of those after the first ones
   bool leaves_no_trace_ = false;
   bool was_hinted_ = false;
   bool is_settled_ = false;

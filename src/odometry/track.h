@@ -54,7 +54,7 @@ public:
   /// Its map takes in a sweep whose pose is known.
   void insert(const Sweep& sweep, const SweepPose& pose);
 
-  /// Its map is from now on that of another track, which was made of sweeps whose poses are known better.
+  /// Its map is from now on that of another track, which was made of the same sweeps, whose poses are known better.
   void takeMapOf(Track&& other);
 
   /// Begins in a map that was made before, of which the pose is roughly known.

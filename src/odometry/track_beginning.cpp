@@ -38,6 +38,7 @@ void Track::beginMap()
 SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, const FirstLook& look)
 {
   constexpr double kTurnPerMetre = 0.02;  // rad: of a car in a bend
+  constexpr int kOfARound = 3;            // iterations: the next round's map is of what they have found
   SurfaceRegistration found;
   SE3 first_T_second = exp(second.periods * look.velocity);
   double far = look.far;
@@ -52,7 +53,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     problem.wants_evidence = round + 1 == look.rounds;
-    problem.max_iterations = round + 1 == look.rounds ? 12 : 3;
+    problem.max_iterations = problem.wants_evidence ? problem.max_iterations : kOfARound;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;
@@ -110,7 +111,7 @@ void Track::insert(const Sweep& sweep, const SweepPose& pose)
 void Track::takeMapOf(Track&& other)
 {
   map_ = std::move(other.map_);
-  keyframe_ = other.keyframe_;
+  map_->keepWithin(settings_.horizon);
 }
 
 }  // namespace pcl_floam

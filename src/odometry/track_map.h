@@ -43,6 +43,9 @@ public:
 
   void insert(const Sweep& sweep, const SweepPose& pose);
 
+  /// From the next sweep on, what lies farther from the sensor (m) is forgotten.
+  void keepWithin(double horizon) { horizon_ = horizon; }
+
   /// As it began, but for its memory, which is used again.
   void clear();
 

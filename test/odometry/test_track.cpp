@@ -6,6 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 namespace pcl_floam::test {
 namespace {
 
@@ -80,6 +84,48 @@ TEST(Tracker, ASweepThatFitsNothingChangesNothing)
   later.periods = 2.0;
   EXPECT_TRUE(step(tracker, later).registration.report.hasConverged());
   EXPECT_LT(error(tracker.track().pose().middle, 5), 0.02);
+}
+
+/// The memory of a map that has held another sweep makes no difference.
+TEST(TrackMap, OneThatHasServedBeforeIsAsANewOne)
+{
+  const auto spare = std::make_shared<SpareMaps>();
+  TrackSettings settings;
+  settings.side = 0.2;
+  Tracker tracker(settings);
+  const Sweep sweep = sweepOf(scanOf(3), tracker);
+  TrackMap fresh(settings);
+  fresh.insert(sweep, {});
+  settings.spare_maps = spare;
+  const SurfaceSearch* memory = nullptr;
+  {
+    TrackMap before(settings);
+    before.insert(sweepOf(scanOf(0), tracker), {path(2.0)});
+    memory = &before.space();
+  }
+  TrackMap again(settings);
+  ASSERT_EQ(&again.space(), memory);
+  again.insert(sweep, {});
+  const std::size_t count = sweep.dense.size();
+  std::vector<Eigen::Vector3d> places;
+  for (const ScanPoint& point : sweep.dense) {
+    places.emplace_back(point.x + 0.05, point.y, point.z + 0.02);
+  }
+  const std::vector<std::uint32_t> lasers(count, kNoLaser);
+  for (const auto part : {&TrackMap::space, &TrackMap::edges}) {
+    std::vector<Surface> found(count);
+    std::vector<Surface> expected(count);
+    (again.*part)().find(places.data(), lasers.data(), count, found.data());
+    (fresh.*part)().find(places.data(), lasers.data(), count, expected.data());
+    std::size_t surfaces = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_EQ(found[i].kind, expected[i].kind);
+      ASSERT_EQ(found[i].center, expected[i].center);
+      ASSERT_EQ(found[i].direction, expected[i].direction);
+      surfaces += found[i].kind != SurfaceKind::unknown ? 1 : 0;
+    }
+    EXPECT_GT(surfaces, count / 20);
+  }
 }
 
 TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
