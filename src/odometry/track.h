@@ -46,7 +46,9 @@ public:
 
   /// Begins with sweeps whose poses are known, in the order of time.
   /// \param keyframes of which the map is made
-  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
+  /// \param during what is known of the motion during the sweeps, too; none: it is as the poses tell
+  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
+             const std::vector<SweepPose>& during = {});
 
   /// Another track may have the memory of its map.
   void releaseMap() { map_.reset(); }
