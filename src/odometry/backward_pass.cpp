@@ -27,21 +27,19 @@ TrackSettings withoutHorizon(TrackSettings settings)
 
 }  // namespace
 
-BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SweepPose>& forwards,
+BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
                            const TrackSettings& settings)
     : back_(withoutHorizon(settings)), count_(forwards.size()), in_map_(count_)
 {
   std::vector<Sweep> sweeps;
   std::vector<SE3> last;
-  std::vector<SweepPose> during;
   left_ = count_ - kTrusted;
   found_.resize(left_);
   for (std::size_t k = count_; k-- > left_;) {
-    last.push_back(forwards[k].middle);
-    during.push_back(forwards[k]);
+    last.push_back(forwards[k]);
     sweeps.push_back(backwards(kept, k, count_));
   }
-  back_.begin(sweeps, last, keyframesAmong(last, settings), during);
+  back_.begin(sweeps, last, keyframesAmong(last, settings));
 }
 
 void BackwardPass::step(const std::vector<Sweep>& kept)

@@ -103,7 +103,7 @@ void Start::beginRevision(Hypotheses& hypotheses)
   leaves_no_trace_ = leavesNoTrace(hypotheses);
   hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
   for (const Hypothesis& hypothesis : hypotheses.all()) {
-    std::vector<SweepPose> first = hypothesis.poses;  // those found with a young map, and some that are trusted
+    std::vector<SE3> first = middlesOf(hypothesis.poses);  // those found with a young map, and some that are trusted
     first.resize(std::min(first.size(), kRevised));
     revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
   }

@@ -46,9 +46,7 @@ public:
 
   /// Begins with sweeps whose poses are known, in the order of time.
   /// \param keyframes of which the map is made
-  /// \param during what is known of the motion during the sweeps, too; none: it is as the poses tell
-  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
-             const std::vector<SweepPose>& during = {});
+  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
 
   /// Another track may have the memory of its map.
   void releaseMap() { map_.reset(); }

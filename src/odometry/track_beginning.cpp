@@ -80,8 +80,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   return found;
 }
 
-void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes,
-                  const std::vector<SweepPose>& during)
+void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
 {
   constexpr Doubt kKnown = {0.01, 0.01};
   beginMap();
@@ -89,7 +88,7 @@ void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& pose
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::size_t next = std::max<std::size_t>(i, 1);
     velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
-    pose_ = during.empty() ? SweepPose{poses[i], fractionOf(sweeps[i]) * velocity} : during[i];
+    pose_ = {poses[i], fractionOf(sweeps[i]) * velocity};
     if (i == 0) {
       motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
       motion_.place(poses[i], covarianceOf(kKnown));
