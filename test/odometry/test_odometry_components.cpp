@@ -127,6 +127,7 @@ TEST(OdometryComponents, WhatTheEngineHasNoUseForIsRefused)
   components.map = std::make_shared<VoxelPyramid>(1.0);
   EXPECT_THROW(odometry.setComponents(components), std::invalid_argument);
 }
+
 TEST(OdometryComponents, AMapOfOnesOwnServesAsTheOdometrysDoes)
 {
   if (isByFeatures()) {

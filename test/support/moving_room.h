@@ -12,7 +12,7 @@ namespace pcl_floam::test {
 
 using Cloud = pcl::PointCloud<PointXYZIRT>;
 
-/// These tests are run for each engine.
+/// These tests are run for each engine, the second time with this variable in their environment.
 inline bool isByFeatures()
 {
   return std::getenv("PCL_FLOAM_TEST_FEATURES") != nullptr;
