@@ -68,12 +68,6 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
 void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
 {
   app.option_defaults()->group("Structure of a scan (found automatically)");
-  addChoice(
-      app, "--structure", o.parameters.structure,
-      {{"auto", ScanStructure::automatic}, {"scan-lines", ScanStructure::scan_lines}, {"space", ScanStructure::space}},
-      "work from scan lines, or from neighbourhoods in space as for\n"
-      "lidars that have none; auto: scan lines where they are found.\n"
-      "With scan-lines, a scan without them is not tracked");
   addChoice(app, "--timing", o.parameters.timing_source,
             {{"auto", ScanTimingSource::automatic},
              {"field", ScanTimingSource::time_field},

@@ -70,17 +70,22 @@ Json matrixOf(const SE3& pose)
 /// Why a scan was worked from scan lines, or from space.
 std::string structureReason(const OdometryReport& scan)
 {
-  if (scan.structure != ScanStructure::scan_lines) {
-    return scan.structure == ScanStructure::space ? toString(scan.scan_line_failure) : "no scan was read";
+  if (scan.scan_lines == 0) {
+    return scan.points > 0 ? toString(scan.scan_line_failure) : "no scan was read";
   }
   return formatted("%zu scan lines by %s, confidence %.2f", scan.scan_lines, toString(scan.scan_line_source),
                    static_cast<double>(scan.scan_line_confidence));
 }
 
+const char* structureOf(const OdometryReport& scan)
+{
+  return scan.scan_lines > 0 ? "scan lines" : "space";
+}
+
 Json structureJson(const OdometryReport& last)
 {
   return {{"engine", toString(last.engine)},
-          {"structure", toString(last.structure)},
+          {"structure", structureOf(last)},
           {"structure_reason", structureReason(last)},
           {"scan_lines", last.scan_lines},
           {"scan_line_source", toString(last.scan_line_source)},
@@ -130,7 +135,7 @@ std::string describe(const RunSummary& summary)
                 result.count(TrackingState::doubtful), result.count(TrackingState::predicted), result.unreadable.size(),
                 result.provisional);
   text += formatted("\n%-22s %s", "registered by", toString(last.engine));
-  text += formatted("\n%-22s %s: %s; times by %s", "structure", toString(last.structure), structureReason(last).c_str(),
+  text += formatted("\n%-22s %s: %s; times by %s", "structure", structureOf(last), structureReason(last).c_str(),
                     toString(last.timing_source));
   if (result.with_weak_directions > 0) {
     text += formatted("\n%-22s in %zu scans: hardly constrained, there the prediction was kept", "weak directions",

@@ -30,8 +30,7 @@ void undistort(pcl::PCLPointCloud2& cloud, const OdometryReport& report, const O
   const CloudView seen = moved_cloud.take(view, frame_T_sensor.inverse());
   ScanLines lines;
   ScanTiming timing = findScanTiming(seen, lines, report.timing_source);
-  if (!timing.valid() && report.timing_source != ScanTimingSource::none &&
-      parameters.structure != ScanStructure::space) {
+  if (!timing.valid() && report.timing_source != ScanTimingSource::none) {
     findScanLines(seen, parameters.sensor, ScanLineSource::automatic, lines);
     timing = findScanTiming(seen, lines, report.timing_source);
   }

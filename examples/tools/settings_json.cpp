@@ -48,7 +48,6 @@ Json toJson(const OdometryParameters& p)
 {
   Json json = {{"engine", toString(p.engine)},
                {"sensor", p.sensor.name},
-               {"structure", toString(p.structure)},
                {"timing", toString(p.timing_source)},
                {"vertical_correction_deg", p.vertical_correction},
                {"scan_period_s", p.scan_period},

@@ -20,16 +20,6 @@ const char* toString(ScanLineSource source)
   return "unknown";
 }
 
-const char* toString(ScanStructure structure)
-{
-  switch (structure) {
-    case ScanStructure::automatic: return "automatic";
-    case ScanStructure::scan_lines: return "scan lines";
-    case ScanStructure::space: return "space";
-  }
-  return "unknown";
-}
-
 const char* toString(ScanLineFailure failure)
 {
   switch (failure) {
@@ -127,6 +117,10 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     lines.sorted_by_azimuth = lines.transposed = lines.kitti_order = false;
   };
   start_over();
+  if (!sensor.has_scan_lines) {
+    lines.failure = ScanLineFailure::not_looked_for;
+    return;
+  }
   if (!hasMeasurablePoint(cloud)) {
     lines.failure = ScanLineFailure::empty_cloud;
     return;

@@ -13,6 +13,7 @@ namespace pcl_floam {
 namespace {
 
 constexpr float kRadPerDegree = 3.14159265358979F / 180.0F;
+constexpr const char* kSolidState = "solid-state";
 
 /// \p count elevations in degrees, evenly from \p lowest to \p highest.
 std::vector<float> evenly(int count, float lowest, float highest)
@@ -45,7 +46,9 @@ using Table = std::vector<std::pair<std::string, std::function<std::vector<float
 
 Table makeTable()
 {
-  Table table{{"auto", [] { return std::vector<float>{}; }},
+  const auto none = [] { return std::vector<float>{}; };
+  Table table{{"auto", none},
+              {kSolidState, none},
               {"vlp16", [] { return evenly(16, -15.0F, 15.0F); }},
               {"vlp32c", vlp32c},
               {"hdl32", [] { return evenly(32, -30.67F, 10.67F); }},
@@ -77,7 +80,7 @@ SensorModel sensorModel(std::string_view name)
   for (const auto& [entry, elevations] : table()) {
     if (entry == name) {
       const std::vector<float> degrees = elevations();
-      return degrees.empty() ? SensorModel{} : customSensor(entry, degrees);
+      return degrees.empty() ? SensorModel{entry, {}, entry != kSolidState} : customSensor(entry, degrees);
     }
     known += (known.empty() ? "" : ", ") + entry;
   }
@@ -98,7 +101,7 @@ SensorModel customSensor(std::string name, const std::vector<float>& elevations_
   if (elevations_degrees.size() < 2 || elevations_degrees.size() > kMaxScanLines) {
     throw std::invalid_argument("sensor '" + name + "' needs 2 to " + std::to_string(kMaxScanLines) + " beams");
   }
-  SensorModel model{std::move(name), {}};
+  SensorModel model{std::move(name), {}, true};
   for (const float degrees : elevations_degrees) {
     if (!(std::abs(degrees) <= 90.0F)) {
       throw std::invalid_argument("an elevation of sensor '" + model.name + "' is not within [-90, 90] degrees");

@@ -41,8 +41,8 @@ void validate(const OdometryParameters& p)
   check.range("threads", p.threads, 1, 1024);
   check.range("start_effort", p.start_effort, 2, 1000);
   check.atLeast("keyframe translation", p.keyframe.translation, 0.0);
-  if (p.structure == ScanStructure::space && p.engine == OdometryEngine::features) {
-    throw std::invalid_argument("odometry: structure is space, but the engine 'features' needs scan lines");
+  if (!p.sensor.has_scan_lines && p.engine == OdometryEngine::features) {
+    throw std::invalid_argument("odometry: the sensor has no scan lines, which the engine 'features' needs");
   }
   validate(p.features);
   validate(p.map);

@@ -34,18 +34,11 @@ bool isSingleLayer(const CloudView& scan)
 
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
-  if (parameters.structure == ScanStructure::space) {
+  findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
+  lines_seen_ = std::max(lines_seen_, lines.seenLines());
+  if (lines.valid() && lines_seen_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
     lines = ScanLines();
-    lines.failure = ScanLineFailure::not_looked_for;
-  } else {
-    findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
-    lines_seen_ = std::max(lines_seen_, lines.seenLines());
-    const bool may_do_without =
-        parameters.engine == OdometryEngine::surfaces && parameters.structure == ScanStructure::automatic;
-    if (lines.valid() && lines_seen_ < kFewestLines && may_do_without) {
-      lines = ScanLines();
-      lines.failure = ScanLineFailure::too_few_lines;
-    }
+    lines.failure = ScanLineFailure::too_few_lines;
   }
   if (!lines.valid() && lines_seen_ <= 1 && isSingleLayer(scan)) {
     lines.failure = ScanLineFailure::single_layer;
@@ -123,7 +116,6 @@ void PreparedScan::takeForMap(const CloudView& scan, const std::vector<ScanPoint
 
 void PreparedScan::describeIn(OdometryReport& report) const
 {
-  report.structure = lines.valid() ? ScanStructure::scan_lines : ScanStructure::space;
   report.scan_line_failure = lines.failure;
   report.scan_line_source = lines.source;
   report.scan_line_confidence = lines.confidence;

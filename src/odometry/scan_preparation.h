@@ -24,8 +24,6 @@ struct PreparedScan {
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
-  /// Whether it has no scan lines, on which somebody insists.
-  [[nodiscard]] bool lacks(ScanStructure asked) const { return asked == ScanStructure::scan_lines && !lines.valid(); }
   /// Takes times from the azimuth where nothing else tells them: where the points' order does not either, as of a head
   /// that turns clockwise from the rear. \return whether it had to: it may turn the other way, or the scan was
   /// compensated

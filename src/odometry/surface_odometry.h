@@ -35,9 +35,6 @@ struct SurfaceOdometry : OdometryRun {
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
-    if (scan.lacks(parameters.structure)) {
-      return predictOnly(toString(scan.lines.failure));
-    }
     if (!has_enough_points) {
       return predictOnly("too few points");
     }
@@ -80,7 +77,7 @@ struct SurfaceOdometry : OdometryRun {
     constexpr std::size_t kFewest = 20;
     const ScanReturns returns = scan.returnsOf(cloud, parameters);
     has_enough_points = returns.areAtLeast(kFewest);
-    if (!scan.lacks(parameters.structure) && has_enough_points) {
+    if (has_enough_points) {
       tracker.sample(returns, sweep);
     } else {
       sweep.dense.clear();  // the last scan's

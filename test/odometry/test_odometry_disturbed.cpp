@@ -14,12 +14,12 @@ namespace {
 /// A scan of less points than the one before is not looked at with that one's.
 TEST(OdometryDisturbed, PredictsOverScansOfNoOrFewPoints)
 {
-  for (const ScanStructure structure : {ScanStructure::automatic, ScanStructure::scan_lines, ScanStructure::space}) {
+  for (const char* const sensor : {"auto", "solid-state"}) {
     OdometryParameters parameters = defaults();
-    if (parameters.engine == OdometryEngine::features && structure == ScanStructure::space) {
+    parameters.sensor = sensorModel(sensor);
+    if (isByFeatures() && !parameters.sensor.has_scan_lines) {
       continue;
     }
-    parameters.structure = structure;
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
       Cloud scan = sweep(steadyPath, k);

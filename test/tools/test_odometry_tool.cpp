@@ -94,12 +94,12 @@ TEST_F(OdometryTool, SaysWhetherItWorkedFromScanLinesOrSpaceAndWhy)
   Outcome outcome = odometry("scans -o result --plot none");
   EXPECT_NE(outcome.out.find("scan lines: 32 scan lines by file order"), std::string::npos) << outcome.out;
   EXPECT_EQ(summary()["last_scan"]["structure"], "scan lines");
-  outcome = odometry("scans -o result --structure space --plot none");
+  outcome = odometry("scans -o result --sensor solid-state --plot none");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("space: scan lines were not looked for; times by none"), std::string::npos) << outcome.out;
   EXPECT_EQ(summary()["last_scan"]["structure"], "space");
   EXPECT_EQ(summary()["last_scan"]["structure_reason"], "scan lines were not looked for");
-  EXPECT_EQ(summary()["settings"]["structure"], "space");
+  EXPECT_EQ(summary()["settings"]["sensor"], "solid-state");
   EXPECT_NEAR(poses().back().world_T_sensor.translation.x(), kStep * (kScans - 1), 0.05);
 
   // Every third point, and the frame on its side: no lines are left.
@@ -114,12 +114,11 @@ TEST_F(OdometryTool, SaysWhetherItWorkedFromScanLinesOrSpaceAndWhy)
     without += point;
   }
   folder.write("none/0.bin", without);
-  outcome = odometry("none -o result --structure scan-lines --plot none");
+  outcome = odometry("none -o result --engine features --plot none");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.err.find("0.bin: not tracked: no scan-line structure was found"), std::string::npos) << outcome.err;
   EXPECT_EQ(odometry("none -o result --plot none").status, 0);
-  EXPECT_EQ(odometry("scans -o result --structure space --engine features").status, 2);
-  EXPECT_EQ(odometry("scans -o result --structure lines").status, 2);
+  EXPECT_EQ(odometry("scans -o result --sensor solid-state --engine features").status, 2);
 }
 
 TEST_F(OdometryTool, ScansWithoutStampsAreAPeriodApart)

@@ -22,20 +22,13 @@ enum class ScanLineSource : std::uint8_t {
   elevation_clusters  ///< clusters of the elevations found in the scan itself
 };
 
-/// What the odometry works from: scan lines, or neighbourhoods in space.
-enum class ScanStructure : std::uint8_t {
-  automatic,   ///< scan lines where they are found, space otherwise
-  scan_lines,  ///< scan lines; a scan without them is not tracked
-  space        ///< neighbourhoods in space alone: scan lines are not looked for
-};
-
 /// Why a scan has no lines.
 enum class ScanLineFailure : std::uint8_t {
   none,
   empty_cloud,
   source_not_available,
   no_line_structure,
-  not_looked_for,  ///< as ScanStructure::space wants it
+  not_looked_for,  ///< the sensor has none (\ref SensorModel::has_scan_lines)
   /// For one line to bear out what another one sees; of an odometry by surfaces, whose poses the lines' own pattern may
   /// hold then: they are doubtful.
   too_few_lines,
@@ -44,7 +37,6 @@ enum class ScanLineFailure : std::uint8_t {
   single_layer
 };
 
-[[nodiscard]] const char* toString(ScanStructure structure);
 [[nodiscard]] const char* toString(ScanLineSource source);
 [[nodiscard]] const char* toString(ScanLineFailure failure);
 
@@ -77,7 +69,7 @@ struct ScanLines {
 ///
 /// \param cloud  one scan in the sensor's frame
 /// \param sensor elevation table for `elevation_table`; in the automatic order it is tried before
-///               `elevation_clusters` when the sensor is named
+///               `elevation_clusters` when the sensor is named. One without scan lines: none are looked for
 /// \param source `automatic`, or the one source to use
 /// \param[out] lines overwritten; its memory is reused. On failure it has no lines and says why.
 /// \param threads >= 1; the lines do not depend on it

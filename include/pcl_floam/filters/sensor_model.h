@@ -8,15 +8,16 @@
 
 namespace pcl_floam {
 
-/// A rotating lidar: its beams' elevations.
+/// A lidar: its beams' elevations, if it has beams that turn.
 struct SensorModel {
   std::string name = "auto";      ///< "auto" when nothing is known about the sensor
   std::vector<float> elevations;  ///< rad above the horizontal, rising; empty for "auto"
+  bool has_scan_lines = true;     ///< whether they are looked for
 
   [[nodiscard]] bool isKnown() const { return !elevations.empty(); }
 };
 
-/// The model of a sensor by name: auto, vlp16, vlp32c, hdl32, hdl64, os32, os64, os128 (OS1; also os0-32 to
+/// The model of a sensor by name: auto, solid-state (without scan lines), vlp16, vlp32c, hdl32, hdl64, os32, os64, os128 (OS1; also os0-32 to
 /// os2-128), pandarxt16, pandarxt32. Elevations are the nominal values of the makers' manuals.
 /// \throws std::invalid_argument for an unknown name; the message lists the known ones.
 [[nodiscard]] SensorModel sensorModel(std::string_view name);

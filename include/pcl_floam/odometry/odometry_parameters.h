@@ -17,11 +17,9 @@ namespace pcl_floam {
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
   OdometryEngine engine = OdometryEngine::surfaces;
-  SensorModel sensor;  ///< default "auto"
-  /// Scan lines, or neighbourhoods in space. Default: scan lines where a scan has them. `space` takes clouds as those
-  /// of a lidar without scan lines, which the engine `features` cannot; with `scan_lines` a scan without them is not
-  /// tracked.
-  ScanStructure structure = ScanStructure::automatic;
+  /// Default "auto": scan lines where a scan has them, neighbourhoods in space otherwise. The engine `features` cannot do
+  /// without scan lines.
+  SensorModel sensor;
   ScanTimingSource timing_source = ScanTimingSource::automatic;
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the
   /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205.

@@ -80,9 +80,7 @@ struct OdometryReport {
   /// weak ones have a variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by
-  /// What the scan was worked from: scan lines or space; `automatic` if it was missing.
-  ScanStructure structure = ScanStructure::automatic;
-  ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why it was not scan lines
+  ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why the scan was worked from space, not scan lines
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;
