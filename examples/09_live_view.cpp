@@ -16,19 +16,15 @@
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Colour = pcl::visualization::PointCloudColorHandlerCustom<pcl::PointXYZ>;
 
-namespace {
-
 /// Adds a cloud, or replaces the one of the same name.
-void show(pcl::visualization::PCLVisualizer& viewer, const Cloud::ConstPtr& cloud, const Colour& colour,
-          const std::string& name, double size)
+static void show(pcl::visualization::PCLVisualizer& viewer, const Cloud::ConstPtr& cloud, const Colour& colour,
+                 const std::string& name, double size)
 {
   if (!viewer.updatePointCloud<pcl::PointXYZ>(cloud, colour, name)) {
     viewer.addPointCloud<pcl::PointXYZ>(cloud, colour, name);
     viewer.setPointCloudRenderingProperties(pcl::visualization::PCL_VISUALIZER_POINT_SIZE, size, name);
   }
 }
-
-}  // namespace
 
 int main(int argc, char** argv)
 try {

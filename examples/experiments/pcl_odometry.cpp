@@ -8,9 +8,9 @@
 #include "command_line.h"
 #include "result_writer.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/filters/core/scan_points.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/trajectory.h>
 

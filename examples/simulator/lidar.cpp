@@ -1,6 +1,6 @@
 #include "lidar.h"
 
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 
 #include <algorithm>
 #include <cmath>

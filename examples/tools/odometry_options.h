@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_floam/io/scan_source.h>
-#include <pcl_floam/odometry/odometry_parameters.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
 
 #include <CLI/CLI.hpp>
 

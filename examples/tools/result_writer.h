@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_floam/io/trajectory.h>
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 #include <cstddef>
 #include <filesystem>

@@ -2,11 +2,11 @@
 
 #include "result_writer.h"
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/common/moved_cloud.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/common/core/moved_cloud.h>
+#include <pcl_floam/filters/core/scan_timing.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
-#include <pcl_floam/filters/sweep_motion.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/scan_writer.h>
 

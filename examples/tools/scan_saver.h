@@ -2,8 +2,8 @@
 /// Scans without their distortion, as files.
 #pragma once
 
-#include <pcl_floam/odometry/odometry_parameters.h>
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 #include <pcl/PCLPointCloud2.h>
 

@@ -2,7 +2,7 @@
 /// The odometry's settings as JSON.
 #pragma once
 
-#include <pcl_floam/odometry/odometry_parameters.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
 
 #include <nlohmann/json.hpp>
 

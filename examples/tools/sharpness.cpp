@@ -3,7 +3,7 @@
 #include "pose_pairs.h"
 #include "text_format.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <stdexcept>

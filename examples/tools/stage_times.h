@@ -2,7 +2,7 @@
 /// The stages of the data flow by name, and statistics of their times.
 #pragma once
 
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 #include <array>
 #include <vector>

@@ -6,7 +6,7 @@
 #include "scene.h"
 
 #include <pcl_floam/io/scan_source.h>
-#include <pcl_floam/registration/cloud_features.h>
+#include <pcl_floam/registration/core/cloud_features.h>
 
 #include <pcl/conversions.h>
 

@@ -1,4 +1,4 @@
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 
 #include "common/field_type.h"
 

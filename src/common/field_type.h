@@ -2,7 +2,7 @@
 /// A field's type, found once for a whole cloud instead of once per point.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 
 #include <cstdint>
 #include <cstring>

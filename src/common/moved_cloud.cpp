@@ -1,4 +1,4 @@
-#include <pcl_floam/common/moved_cloud.h>
+#include <pcl_floam/common/core/moved_cloud.h>
 
 namespace pcl_floam {
 

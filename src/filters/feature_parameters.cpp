@@ -1,4 +1,4 @@
-#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
 
 #include "common/parameter_check.h"
 

@@ -4,7 +4,7 @@
 
 #include "filters/line_rating.h"
 
-#include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
 
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "filters/line_neighborhood.h"
 
 #include "common/median.h"
+#include "common/pi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +44,7 @@ LineNeighborhood neighborhoodIn(const LinePoints& line, int wanted, std::vector<
   LineNeighborhood neighborhood;
   neighborhood.each_side = wanted;
   neighborhood.spacing = medianSpacing(line, scratch);
-  const auto full_circle = static_cast<float>(2.0 * M_PI);
+  const auto full_circle = static_cast<float>(2.0 * kPi);
   if (static_cast<float>(line.size()) * kSparse <= full_circle && neighborhood.spacing > kSparse) {
     neighborhood.is_sparse = true;
     neighborhood.each_side =

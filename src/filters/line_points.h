@@ -2,7 +2,7 @@
 /// One scan line as structure of arrays, which the passes over all points of a scan can vectorise.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 
 #include <cstddef>

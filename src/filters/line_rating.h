@@ -5,8 +5,8 @@
 #include "filters/line_points.h"
 #include "filters/wide_smoothness.h"
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
 #include <pcl_floam/filters/scan_lines.h>
 
 #include <cstddef>

@@ -4,8 +4,8 @@
 
 #include "common/field_type.h"
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,5 @@
 // Scan lines from the points' elevations: a sensor's table, or clusters found in the scan.
+#include "common/pi.h"
 #include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 
@@ -40,7 +41,7 @@ float groupByElevation(const CloudView& cloud, const std::vector<float>& elevati
 }
 
 /// Number of points per elevation bin.
-constexpr float kBin = 0.05F * 3.14159265F / 180.0F;
+constexpr float kBin = static_cast<float>(0.05 * kPi / 180.0);
 
 std::vector<int> elevationHistogram(const CloudView& cloud)
 {

@@ -2,7 +2,7 @@
 /// The returns of a scan, some at a time.
 #pragma once
 
-#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/filters/core/scan_points.h>
 
 #include <array>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 
 #include "common/field_type.h"
 #include "common/multi_version.h"

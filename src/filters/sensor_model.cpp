@@ -1,5 +1,6 @@
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 
+#include "common/pi.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace pcl_floam {
 
 namespace {
 
-constexpr float kRadPerDegree = 3.14159265358979F / 180.0F;
+constexpr float kRadPerDegree = static_cast<float>(kPi / 180.0);
 constexpr const char* kSolidState = "solid-state";
 
 /// \p count elevations in degrees, evenly from \p lowest to \p highest.

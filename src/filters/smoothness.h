@@ -4,7 +4,7 @@
 
 #include "filters/line_points.h"
 
-#include <pcl_floam/filters/feature_parameters.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
 
 #include <vector>
 

@@ -2,7 +2,7 @@
 #include "filters/point_times.h"
 #include "filters/scan_returns.h"
 
-#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/filters/core/scan_points.h>
 
 #include <algorithm>
 #include <cmath>

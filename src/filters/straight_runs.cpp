@@ -1,4 +1,4 @@
-#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/filters/core/scan_points.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

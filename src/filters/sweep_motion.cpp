@@ -1,8 +1,8 @@
-#include <pcl_floam/filters/sweep_motion.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 
 #include "common/sweep_trajectory.h"
 
-#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/motion_compensation_mode.h>
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,7 @@
-#include <pcl_floam/filters/vertical_angle.h>
+#include <pcl_floam/filters/core/vertical_angle.h>
 
 #include "common/multi_version.h"
+#include "common/pi.h"
 
 #include <cmath>
 #include <vector>
@@ -13,7 +14,7 @@ namespace {
 struct Turn {
   explicit Turn(double degrees) : sine(std::sin(degrees * kRadians)), cosine(std::cos(degrees * kRadians)) {}
 
-  static constexpr double kRadians = 3.14159265358979323846 / 180.0;
+  static constexpr double kRadians = kPi / 180.0;
   double sine;
   double cosine;
 };

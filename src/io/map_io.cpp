@@ -2,7 +2,7 @@
 #include "io/pcd_header.h"
 #include "io/whole_file.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/map_io.h>
 #include <pcl_floam/io/scan_source.h>
 

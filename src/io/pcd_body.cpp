@@ -5,7 +5,7 @@
 
 #include "io/text.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <pcl/io/lzf.h>

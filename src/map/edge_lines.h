@@ -4,7 +4,7 @@
 
 #include "map/voxel_layer.h"
 
-#include <pcl_floam/map/surface_map.h>
+#include <pcl_floam/map/core/surface_map.h>
 
 #include <Eigen/Core>
 

@@ -2,7 +2,7 @@
 /// Nearest neighbours by FLANN's KD-tree, the paper's choice.
 #pragma once
 
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 #include <Eigen/Core>
 

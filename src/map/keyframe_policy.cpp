@@ -1,4 +1,4 @@
-#include <pcl_floam/map/keyframe_policy.h>
+#include <pcl_floam/map/core/keyframe_policy.h>
 
 namespace pcl_floam {
 

@@ -2,7 +2,7 @@
 /// Which lasers, in which keyframes, a cell's points came from.
 #pragma once
 
-#include <pcl_floam/map/surface.h>
+#include <pcl_floam/map/core/surface.h>
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 /// The nearest points of a search in progress.
 #pragma once
 
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 #include <algorithm>
 #include <array>

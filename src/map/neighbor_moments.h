@@ -4,7 +4,7 @@
 
 #include "common/point_moments.h"
 
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 namespace pcl_floam {
 

@@ -2,7 +2,7 @@
 /// The shape of a cell's points from their running sums.
 #pragma once
 
-#include <pcl_floam/map/surface.h>
+#include <pcl_floam/map/core/surface.h>
 
 #include <Eigen/Core>
 

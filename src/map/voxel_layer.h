@@ -7,7 +7,7 @@
 #include "map/voxel_block.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 #include <Eigen/Core>
 

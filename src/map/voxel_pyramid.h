@@ -5,7 +5,7 @@
 #include "map/surface_fit.h"
 #include "map/voxel_cells.h"
 
-#include <pcl_floam/map/surface_map.h>
+#include <pcl_floam/map/core/surface_map.h>
 
 #include <array>
 #include <cstdint>

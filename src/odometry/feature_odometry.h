@@ -6,7 +6,7 @@
 #include "motion/sweep_pose.h"
 #include "odometry/odometry_run.h"
 
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 
 #include "odometry/track.h"
 
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 #include <cstddef>
 #include <vector>

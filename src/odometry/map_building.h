@@ -6,8 +6,8 @@
 #include "odometry/scan_preparation.h"
 
 #include <pcl_floam/map/keyframe_voxel_map.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry.h>
-#include <pcl_floam/odometry/odometry_parameters.h>
 
 #include <optional>
 #include <vector>

@@ -1,5 +1,6 @@
 #include "odometry/place_search.h"
 
+#include "common/pi.h"
 #include "motion/motion_estimate.h"
 
 #include <Eigen/Geometry>
@@ -74,7 +75,7 @@ std::vector<SE3> anyTurnOf(const std::vector<SE3>& poses)
   constexpr int kTurns = 18;
   std::vector<SE3> turned;
   for (int turn = 0; turn < kTurns; ++turn) {
-    const Eigen::AngleAxisd about_axis(2.0 * M_PI * turn / kTurns, Eigen::Vector3d::UnitZ());
+    const Eigen::AngleAxisd about_axis(2.0 * kPi * turn / kTurns, Eigen::Vector3d::UnitZ());
     for (const SE3& pose : poses) {
       turned.emplace_back(pose.rotation * about_axis.toRotationMatrix(), pose.translation);
     }

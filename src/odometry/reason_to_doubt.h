@@ -5,7 +5,7 @@
 #include "odometry/tracker.h"
 
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 namespace pcl_floam {
 

@@ -3,8 +3,8 @@
 #include "common/point_moments.h"
 #include "filters/scan_line_finders.h"
 
-#include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/filters/vertical_angle.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
+#include <pcl_floam/filters/core/vertical_angle.h>
 
 #include <algorithm>
 

@@ -5,10 +5,10 @@
 #include "filters/feature_selection.h"
 #include "filters/line_grouping.h"
 
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/filters/scan_points.h>
-#include <pcl_floam/odometry/odometry_parameters.h>
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 #include <vector>
 

@@ -2,10 +2,10 @@
 /// Between the frame that clouds are given in and the sensor's own.
 #pragma once
 
-#include <pcl_floam/common/moved_cloud.h>
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/motion/motion_hint.h>
-#include <pcl_floam/odometry/odometry_report.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 
 namespace pcl_floam {
 

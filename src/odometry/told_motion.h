@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_floam/motion/motion_hint.h>
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <optional>
 

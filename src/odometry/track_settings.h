@@ -2,9 +2,9 @@
 /// What all tracks of an odometry have in common.
 #pragma once
 
-#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/motion_compensation_mode.h>
 #include <pcl_floam/odometry/odometry_components.h>
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 #include <memory>
 

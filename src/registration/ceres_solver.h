@@ -5,8 +5,8 @@
 #include "registration/correspondences.h"
 #include "registration/normal_equations.h"
 
-#include <pcl_floam/registration/pose_factor.h>
-#include <pcl_floam/registration/sweep_model.h>
+#include <pcl_floam/registration/core/pose_factor.h>
+#include <pcl_floam/registration/core/sweep_model.h>
 
 namespace pcl_floam {
 

@@ -8,7 +8,7 @@
 #include "registration/pose_factors.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/registration/cloud_registration.h>
+#include <pcl_floam/registration/core/cloud_registration.h>
 
 namespace pcl_floam {
 

@@ -1,7 +1,7 @@
 #include "filters/scan_line_finders.h"
 
-#include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/registration/cloud_features.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
+#include <pcl_floam/registration/core/cloud_features.h>
 
 #include <cstdint>
 

@@ -5,7 +5,7 @@
 #include "registration/local_shape.h"
 #include "registration/point_tree.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 
 #include <Eigen/Core>
 

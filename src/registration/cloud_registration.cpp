@@ -1,4 +1,4 @@
-#include <pcl_floam/registration/cloud_registration.h>
+#include <pcl_floam/registration/core/cloud_registration.h>
 
 #include "common/covariance.h"
 #include "registration/cloud_alignment.h"

@@ -5,9 +5,9 @@
 #include "common/sweep_trajectory.h"
 #include "registration/factors.h"
 
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/registration/feature_registration.h>
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/registration/core/feature_registration.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 #include <limits>
 #include <vector>

@@ -5,7 +5,7 @@
 /// (sweep_trajectory.h). Gauss-Newton and Ceres use these same functions.
 #pragma once
 
-#include <pcl_floam/filters/feature_kind.h>
+#include <pcl_floam/filters/core/feature_kind.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

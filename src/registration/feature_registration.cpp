@@ -1,4 +1,4 @@
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include "registration/ceres_solver.h"
 #include "registration/correspondences.h"

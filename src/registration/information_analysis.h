@@ -5,7 +5,7 @@
 #include "common/eigen_analysis.h"
 #include "registration/normal_equations.h"
 
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <Eigen/Core>
 

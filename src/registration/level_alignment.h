@@ -7,7 +7,7 @@
 #include "registration/residual_rows.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/registration/cloud_registration.h>
+#include <pcl_floam/registration/core/cloud_registration.h>
 
 #include <Eigen/Core>
 

@@ -4,7 +4,7 @@
 
 #include "registration/factors.h"
 
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 #include <optional>
 

@@ -1,5 +1,6 @@
 #include "registration/local_shape.h"
 
+#include "common/pi.h"
 #include "common/point_moments.h"
 
 #include <algorithm>
@@ -73,7 +74,7 @@ double spacingFrom(std::vector<float>& radii)
 {
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
-  return std::sqrt(3.14159265358979323846 / kNeighbors) * static_cast<double>(*middle);
+  return std::sqrt(kPi / kNeighbors) * static_cast<double>(*middle);
 }
 
 /// Distance of the farthest neighbour, m.

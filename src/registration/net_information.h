@@ -4,7 +4,7 @@
 
 #include "registration/normal_equations.h"
 
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <vector>
 

@@ -5,7 +5,7 @@
 #include "registration/correspondences.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/registration/sweep_model.h>
+#include <pcl_floam/registration/core/sweep_model.h>
 
 #include <cstddef>
 #include <functional>

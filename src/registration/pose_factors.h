@@ -2,7 +2,7 @@
 /// Factors of the user's as a registration takes them.
 #pragma once
 
-#include <pcl_floam/registration/pose_factor.h>
+#include <pcl_floam/registration/core/pose_factor.h>
 
 #include <vector>
 

@@ -1,6 +1,6 @@
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 namespace pcl_floam {
 

@@ -4,7 +4,7 @@
 
 #include "common/median.h"
 
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 #include <algorithm>
 #include <cmath>

@@ -6,10 +6,10 @@
 #include "registration/sweep_prior.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/scan_points.h>
-#include <pcl_floam/map/surface.h>
-#include <pcl_floam/registration/registration_parameters.h>
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/map/core/surface.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <cstdint>
 #include <vector>

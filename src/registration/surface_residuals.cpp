@@ -1,5 +1,6 @@
 #include "registration/surface_residuals.h"
 
+#include "common/pi.h"
 #include "map/laser_support.h"
 #include "registration/residual_rows.h"
 
@@ -265,7 +266,7 @@ void SurfaceResiduals::weighEvidence(double squared, double variance, double dim
 {
   constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
   if (weighs_evidence) {
-    const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(2.0 * M_PI * variance)));
+    const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(2.0 * kPi * variance)));
     sums.evidence += std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
   }
 }

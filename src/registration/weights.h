@@ -4,9 +4,9 @@
 
 #include "registration/correspondences.h"
 
-#include <pcl_floam/filters/feature_kind.h>
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/filters/core/feature_kind.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 #include <vector>
 

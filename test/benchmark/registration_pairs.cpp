@@ -1,6 +1,7 @@
 #include "benchmark/registration_pairs.h"
 
 #include "benchmark/scan_pairs.h"
+#include "support/constants.h"
 #include "support/random_motion.h"
 
 #include <algorithm>
@@ -11,10 +12,10 @@ namespace pcl_floam::benchmark {
 
 namespace {
 
+using pcl_floam::test::kPi;
+
 using pcl_floam::test::randomTwist;
 using pcl_floam::test::uniform;
-
-constexpr double kPi = 3.14159265358979323846;
 
 double normal(std::mt19937& random)
 {

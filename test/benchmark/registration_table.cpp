@@ -5,6 +5,7 @@
 // Below the table it lists where ours does not keep what it promises. Times are the processor's.
 #include "benchmark/registration_methods.h"
 #include "benchmark/registration_pairs.h"
+#include "support/constants.h"
 
 #include <pcl/console/print.h>
 
@@ -19,6 +20,8 @@
 
 namespace pcl_floam::benchmark {
 namespace {
+
+using pcl_floam::test::kPi;
 
 /// What a method did on the pairs of one kind.
 struct Score {
@@ -46,7 +49,7 @@ SE3 guessFor(const CloudPair& pair, const Offset& offset, const Eigen::Vector3d&
     centroid += point.getVector3fMap().cast<double>();
   }
   centroid = pair.target_T_source * (centroid / static_cast<double>(pair.source->size()));
-  const Eigen::Matrix3d turn = expSO3(offset.degrees * 3.14159265358979323846 / 180.0 * axis);
+  const Eigen::Matrix3d turn = expSO3(offset.degrees * kPi / 180.0 * axis);
   // Most of the shift is level: scans are not taken from below the ground.
   const Eigen::Vector3d shift = offset.shift * pair.extent * Eigen::Vector3d(0.74, -0.66, 0.12).normalized();
   return SE3(turn, centroid + shift - turn * centroid) * pair.target_T_source;

@@ -13,11 +13,14 @@
 
 #ifdef PCL_FLOAM_WITH_SIMULATOR
 #include "simulation.h"
+#include "support/constants.h"
 #endif
 
 namespace pcl_floam::benchmark {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 CloudPair makeScanPair(Cloud::Ptr source, Cloud::Ptr target, const SE3& target_T_source, double success)
 {
@@ -71,7 +74,7 @@ Cloud::Ptr readKittiScan(const std::string& data, std::size_t number, std::size_
 void compensate(Cloud& cloud, const Vector6& motion)
 {
   for (Point& point : cloud) {
-    const double fraction = -std::atan2(point.y, point.x) / (2.0 * 3.14159265358979323846);
+    const double fraction = -std::atan2(point.y, point.x) / (2.0 * kPi);
     const SE3 correction = exp(Vector6(fraction * motion));
     point.getVector3fMap() = (correction * point.getVector3fMap().cast<double>()).cast<float>();
   }

@@ -9,8 +9,8 @@
 #include "registration/line_plane_fit.h"
 #include "registration/normal_equations.h"
 
-#include <pcl_floam/filters/sweep_motion.h>
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include <benchmark/benchmark.h>
 

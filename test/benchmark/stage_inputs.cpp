@@ -1,6 +1,6 @@
 #include "benchmark/stage_inputs.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <pcl/conversions.h>

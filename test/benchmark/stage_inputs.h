@@ -2,7 +2,7 @@
 /// The scans on which the odometry's stages are timed.
 #pragma once
 
-#include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -1,7 +1,7 @@
 // One view of clouds of every kind.
 #include "support/synthetic_cloud.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 
 #include <pcl/conversions.h>
 

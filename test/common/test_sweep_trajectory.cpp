@@ -2,7 +2,7 @@
 #include "common/sweep_trajectory.h"
 #include "support/random_motion.h"
 
-#include <pcl_floam/filters/sweep_motion.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 
 #include <gtest/gtest.h>
 

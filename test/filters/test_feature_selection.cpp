@@ -1,7 +1,7 @@
 // Which of the points that could be features become ones.
 #include "support/synthetic_cloud.h"
 
-#include <pcl_floam/filters/feature_kind.h>
+#include <pcl_floam/filters/core/feature_kind.h>
 
 #include <gtest/gtest.h>
 

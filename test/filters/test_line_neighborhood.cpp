@@ -1,5 +1,6 @@
 // Which lines are sparse, and how many neighbours tell of the surface there.
 #include "filters/line_neighborhood.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace pcl_floam::test {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+constexpr double kDegree = kPi / 180.0;
 
 /// A level line, \p spacing degrees from beam to beam, of which \p is_there has returns.
 LinePoints lineOf(

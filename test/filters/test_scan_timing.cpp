@@ -2,7 +2,7 @@
 #include "filters/azimuth.h"
 #include "support/synthetic_cloud.h"
 
-#include <pcl_floam/filters/scan_timing.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 
 #include <gtest/gtest.h>
 

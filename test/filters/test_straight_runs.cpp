@@ -1,7 +1,8 @@
 // How far a scan line goes on straight about a return.
+#include "support/constants.h"
 #include "support/synthetic_cloud.h"
 
-#include <pcl_floam/filters/scan_points.h>
+#include <pcl_floam/filters/core/scan_points.h>
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace pcl_floam::test {
 namespace {
 
-constexpr double kStep = 0.2 * M_PI / 180.0;
+constexpr double kStep = 0.2 * kPi / 180.0;
 constexpr double kNothing = 0.0;  // m: no return
 
 /// The lower of two scan lines over +-20 steps about the x axis, of what a function of the azimuth says is how far
@@ -50,7 +51,7 @@ Eigen::Vector3d runAt(const std::vector<ScanPoint>& points, std::size_t i)
 TEST(StraightRuns, GoAlongAWallHoweverFarApartItsReturnsLie)
 {
   for (const double degrees : {30.0, 3.0, 1.5}) {  // between wall and ray
-    const double angle = degrees * M_PI / 180.0;
+    const double angle = degrees * kPi / 180.0;
     const auto points = lineOf([&](double azimuth) { return 20.0 * std::sin(angle) / std::sin(angle + azimuth); });
     const std::size_t middle = 20;
     const Eigen::Vector3d ends(points[middle - 3].x - points[middle + 3].x, points[middle - 3].y - points[middle + 3].y,

@@ -1,4 +1,5 @@
 // The correction of a sensor's vertical angles.
+#include "support/constants.h"
 #include "support/random_motion.h"
 
 #include <pcl_floam/filters/vertical_correction.h>
@@ -16,7 +17,7 @@ namespace {
 
 double elevationOf(const Feature& f)
 {
-  return std::atan2(f.z, std::hypot(f.x, f.y)) * 180.0 / M_PI;
+  return std::atan2(f.z, std::hypot(f.x, f.y)) * 180.0 / kPi;
 }
 
 TEST(VerticalCorrection, RaisesElevationsAndChangesNothingElse)
@@ -84,7 +85,7 @@ TEST(VerticalCorrection, AsAFilterItKeepsOrderFieldsAndWhatIsNotFinite)
     EXPECT_NEAR(after.getVector3fMap().norm(), before.getVector3fMap().norm(), 1e-4);
     const double rise =
         std::atan2(after.z, std::hypot(after.x, after.y)) - std::atan2(before.z, std::hypot(before.x, before.y));
-    EXPECT_NEAR(rise * 180.0 / M_PI, 0.5, 1e-4);
+    EXPECT_NEAR(rise * 180.0 / kPi, 0.5, 1e-4);
     // The normal turns with its point: their product stays.
     EXPECT_NEAR(after.getVector3fMap().dot(after.getNormalVector3fMap()),
                 before.getVector3fMap().dot(before.getNormalVector3fMap()), 1e-4);

@@ -3,6 +3,7 @@
 
 #include "filters/line_neighborhood.h"
 #include "filters/smoothness.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -19,9 +20,9 @@ namespace pcl_floam::test {
 namespace {
 
 constexpr int kEachSide = 5;
-constexpr double kSpacing = 0.2 * M_PI / 180.0;  // rad, of the beams
-constexpr double kJamb = 0.45;                   // m to each side of the middle of a door
-constexpr double kDepth = 0.14;                  // m, of the door behind its wall
+constexpr double kSpacing = 0.2 * kPi / 180.0;  // rad, of the beams
+constexpr double kJamb = 0.45;                  // m to each side of the middle of a door
+constexpr double kDepth = 0.14;                 // m, of the door behind its wall
 
 /// A level line 60 degrees to each side; \p range by the angle, with noise of \p sd m, of which a part is \p missing.
 LinePoints lineOf(const std::function<double(double)>& range, double sd, double missing, std::mt19937& random)
@@ -29,7 +30,7 @@ LinePoints lineOf(const std::function<double(double)>& range, double sd, double 
   std::normal_distribution<double> noise(0.0, 1.0);
   std::uniform_real_distribution<double> lot(0.0, 1.0);
   LinePoints line;
-  for (double angle = -M_PI / 3.0; angle < M_PI / 3.0; angle += kSpacing) {
+  for (double angle = -kPi / 3.0; angle < kPi / 3.0; angle += kSpacing) {
     const double seen = range(angle) + sd * noise(random);
     if (lot(random) >= missing) {
       line.x.push_back(static_cast<float>(seen * std::sin(angle)));

@@ -4,7 +4,7 @@
 #include "support/hdl64_bytes.h"
 #include "support/recording_bytes.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "fuzz/fuzz_input.h"
 #include "fuzz/fuzz_targets.h"
 
-#include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -2,7 +2,7 @@
 #include "io/reason_of_pcd.h"
 #include "support/temporary_folder.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/common/point_types.h>
 #include <pcl_floam/io/scan_source.h>
 

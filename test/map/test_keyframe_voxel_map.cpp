@@ -1,7 +1,8 @@
 // The map of keyframes, and when a scan becomes one.
+#include "support/constants.h"
 #include "support/random_motion.h"
 
-#include <pcl_floam/map/keyframe_policy.h>
+#include <pcl_floam/map/core/keyframe_policy.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 
 #include <gtest/gtest.h>
@@ -183,7 +184,7 @@ TEST(KeyframeVoxelMap, TakesAndGivesCloudsOfAnyPointType)
     scan.push_back(point);
   }
   scan[7].y = std::numeric_limits<float>::quiet_NaN();
-  const SE3 world_T_sensor(expSO3(Eigen::Vector3d(0.0, 0.0, M_PI / 2.0)), Eigen::Vector3d(0.0, 0.0, 5.0));
+  const SE3 world_T_sensor(expSO3(Eigen::Vector3d(0.0, 0.0, kPi / 2.0)), Eigen::Vector3d(0.0, 0.0, 5.0));
   KeyframeVoxelMap map;
   map.addPointCloud(scan, FeatureKind::plane, world_T_sensor);
   EXPECT_EQ(map.size(FeatureKind::edge), 0U);

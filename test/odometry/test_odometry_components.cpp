@@ -1,4 +1,5 @@
 // Objects of one's own in the odometry: factors, keyframes, points, map.
+#include "support/constants.h"
 #include "support/counting_map.h"
 #include "support/moving_room.h"
 
@@ -168,7 +169,27 @@ TEST(OdometryComponents, PointsOfOnesOwnChoiceAreRegistered)
       chosen + edges);
 }
 
-/// A floor without end tells nothing of the way along it.
+/// From anywhere above it: it tells nothing of the way along it.
+Cloud endlessFloor()
+{
+  Cloud cloud;
+  for (int ring = 0; ring < 16; ++ring) {
+    const float down = static_cast<float>(-0.05 - 0.02 * ring);
+    for (int i = 0; i < 600; ++i) {
+      const float azimuth = static_cast<float>(2.0 * kPi * i / 600.0);
+      const float range = 1.7F / std::sin(-down);
+      PointXYZIRT point;
+      point.x = range * std::cos(down) * std::cos(azimuth);
+      point.y = range * std::cos(down) * std::sin(azimuth);
+      point.z = -1.7F;
+      point.ring = static_cast<std::uint16_t>(ring);
+      point.time = 0.1F * static_cast<float>(i) / 600.0F;
+      cloud.push_back(point);
+    }
+  }
+  return cloud;
+}
+
 TEST(OdometryComponents, AFactorTellsWhatScansDoNot)
 {
   if (isByFeatures()) {
@@ -192,24 +213,10 @@ TEST(OdometryComponents, AFactorTellsWhatScansDoNot)
   Odometry<PointXYZIRT> odometry(parameters);
   odometry.setComponents(withFactor(factor));
   constexpr double kStep = 0.4;  // m a scan, along x
+  const Cloud floor = endlessFloor();
   for (int k = 0; k < 20; ++k) {
-    Cloud cloud;
-    for (int ring = 0; ring < 16; ++ring) {
-      const float down = static_cast<float>(-0.05 - 0.02 * ring);
-      for (int i = 0; i < 600; ++i) {
-        const float azimuth = static_cast<float>(2.0 * M_PI * i / 600.0);
-        const float range = 1.7F / std::sin(-down);
-        PointXYZIRT point;
-        point.x = range * std::cos(down) * std::cos(azimuth);
-        point.y = range * std::cos(down) * std::sin(azimuth);
-        point.z = -1.7F;
-        point.ring = static_cast<std::uint16_t>(ring);
-        point.time = 0.1F * static_cast<float>(i) / 600.0F;
-        cloud.push_back(point);
-      }
-    }
     factor->place.x() = kStep * k;
-    const OdometryReport& report = odometry.track(cloud);
+    const OdometryReport& report = odometry.track(floor);
     if (k > 0) {
       EXPECT_NEAR(report.world_T_sensor.translation.x(), kStep * k, 0.05) << k;
     }

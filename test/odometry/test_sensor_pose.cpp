@@ -1,7 +1,7 @@
 // A sensor that is not at the origin of the frame that its clouds are given in.
 #include "support/moving_room.h"
 
-#include <pcl_floam/common/moved_cloud.h>
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/odometry/odometry.h>
 
 #include <pcl/common/io.h>

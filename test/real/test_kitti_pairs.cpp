@@ -1,5 +1,6 @@
 // Pairs of real scans, raw and thinned: skipped, and saying so, where they are not there.
 #include "real/real_data.h"
+#include "support/constants.h"
 
 #include <pcl_floam/io/trajectory.h>
 #include <pcl_floam/registration/edge_plane_registration.h>
@@ -109,7 +110,7 @@ TEST_F(KittiPairs, ThirdNextScansAreFoundFromTheIdentity)
 
 TEST_F(KittiPairs, ScansTwentyMetresApartAreFoundFromHalfAMetreAndThreeDegreesOff)
 {
-  const SE3 off(expSO3(3.0 / 180.0 * 3.14159265358979323846 * Eigen::Vector3d(1.0, 2.0, 2.0).normalized()),
+  const SE3 off(expSO3(3.0 / 180.0 * kPi * Eigen::Vector3d(1.0, 2.0, 2.0).normalized()),
                 0.5 * Eigen::Vector3d(2.0, 1.0, 1.0).normalized());
   for (const auto& [target, source] : {std::pair(0U, 16U), std::pair(30U, 48U), std::pair(60U, 83U)}) {
     EXPECT_LT(errorOf(target, source, 0.3F, truth(target, source) * off), 0.2) << target;

@@ -5,7 +5,7 @@
 #include "support/synthetic_cloud.h"
 
 #include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include <gtest/gtest.h>
 

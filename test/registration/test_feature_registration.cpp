@@ -2,9 +2,9 @@
 #include "registration/furnished_room.h"
 #include "support/random_motion.h"
 
-#include <pcl_floam/filters/sweep_motion.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // The pose estimation of a sweep during which the sensor moves.
 #include "registration/furnished_room.h"
 
-#include <pcl_floam/filters/sweep_motion.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
 // Registration of returns along straight runs: of a wall's columns, and of posts.
+#include "support/constants.h"
 #include "support/corner.h"
 
 #include <gtest/gtest.h>
@@ -11,6 +12,8 @@ namespace pcl_floam {
 using test::problemOf;
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 /// A wall's returns, one column beside the next, look like posts that stand where the sensor drew them.
 class Columns : public SurfaceSearch {
@@ -57,7 +60,7 @@ RegistrationReport registeredWithColumns(SurfaceKind kind, double along, float r
   const Columns target(kind);
   const std::vector<ScanPoint> points = columnsSeen(kind, along, run);
   SurfaceProblem problem = problemOf(points, target);
-  problem.prior.pose.rotation = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  problem.prior.pose.rotation = Eigen::AngleAxisd(kPi / 2.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   problem.prior.covariance *= prior;
   problem.prior.pose_counts = true;
   problem.locked = {false, false, true, true, true, true};

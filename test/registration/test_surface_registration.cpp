@@ -4,6 +4,7 @@
 #include "map/edge_lines.h"
 #include "map/voxel_pyramid.h"
 #include "registration/surface_residuals.h"
+#include "support/constants.h"
 #include "support/corner.h"
 #include "support/random_motion.h"
 
@@ -21,6 +22,8 @@ using test::problemOf;
 using test::sweepOf;
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 double distance(const SE3& a, const SE3& b)
 {
@@ -185,7 +188,7 @@ TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
   for (const double range : {4.0, 100.0}) {
     std::vector<ScanPoint> points(900);
     for (ScanPoint& point : points) {
-      const double azimuth = test::uniform(random, M_PI);
+      const double azimuth = test::uniform(random, kPi);
       point.x = static_cast<float>(range * std::cos(azimuth));
       point.y = static_cast<float>(range * std::sin(azimuth));
       point.z = static_cast<float>(Corner::kWall);

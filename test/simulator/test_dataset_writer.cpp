@@ -1,9 +1,10 @@
 // What the simulator writes to disk.
 
 #include "dataset_writer.h"
+#include "support/constants.h"
 #include "support/temporary_folder.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <pcl/io/pcd_io.h>
@@ -22,6 +23,8 @@
 namespace pcl_floam::simulator {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 SimulationOptions smallOptions()
 {
@@ -142,9 +145,9 @@ TEST(DatasetWriter, KittiOrderIsRingByRingFromTheTop)
     ASSERT_EQ(points.size(), sweep.cloud.size());
     int rings = 1;
     double previous_azimuth = 0.0;
-    double previous_elevation = M_PI;
+    double previous_elevation = kPi;
     for (const auto& [x, y, z, intensity] : points) {
-      const double azimuth = std::atan2(y, x) + (y < 0.0F ? 2.0 * M_PI : 0.0);
+      const double azimuth = std::atan2(y, x) + (y < 0.0F ? 2.0 * kPi : 0.0);
       const double elevation = std::atan2(z, std::hypot(x, y));
       rings += azimuth < previous_azimuth - 4.0 ? 1 : 0;
       ASSERT_TRUE(azimuth >= previous_azimuth - 1e-5 || azimuth < previous_azimuth - 4.0);

@@ -1,6 +1,7 @@
 // A sensor that is swung by hand, half as fast again as it usually is in the simulated office, from the first scan on.
 
 #include "simulation.h"
+#include "support/constants.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -14,6 +15,8 @@
 namespace pcl_floam::simulator {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 constexpr double kPeriod = 0.1;  // s
 
@@ -75,7 +78,7 @@ TEST_P(FastMotion, IsFollowedFromTheFirstScanOn)
   RecordProperty("acceleration_m_per_s2", std::to_string(acceleration));
   RecordProperty("farthest_m", std::to_string(farthest));
   RecordProperty("farthest_turned_rad", std::to_string(farthest_turned));
-  EXPECT_GT(fastest_turn, 120.0 * M_PI / 180.0);  // else nothing was shown
+  EXPECT_GT(fastest_turn, 120.0 * kPi / 180.0);  // else nothing was shown
   EXPECT_GT(acceleration, 5.0);
   EXPECT_LT(farthest, 0.06);
   EXPECT_LT(farthest_turned, 0.011);

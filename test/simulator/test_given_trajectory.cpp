@@ -2,6 +2,7 @@
 
 #include "height_raster.h"
 #include "simulation.h"
+#include "support/constants.h"
 #include "trajectory_file.h"
 #include "world.h"
 
@@ -16,6 +17,8 @@
 
 namespace pcl_floam::simulator {
 
+using pcl_floam::test::kPi;
+
 /// A camera that drives ahead at 10 m/s, climbs by 0.05 m a metre and turns left by 0.2 degrees a metre.
 class GivenTrajectory : public testing::Test {
 protected:
@@ -28,7 +31,7 @@ protected:
     double x = 0.0;
     double z = 0.0;
     for (int i = 0; i < 300; ++i) {
-      const double yaw = 0.2 * M_PI / 180.0 * i;  // to the left: the camera's z axis goes towards its -x
+      const double yaw = 0.2 * kPi / 180.0 * i;  // to the left: the camera's z axis goes towards its -x
       stream << std::cos(yaw) << " 0 " << -std::sin(yaw) << ' ' << x << " 0 1 0 " << -0.05 * i << ' ' << std::sin(yaw)
              << " 0 " << std::cos(yaw) << ' ' << z << '\n';
       x -= std::sin(yaw);
@@ -54,7 +57,7 @@ TEST_F(GivenTrajectory, IsReadInABodysAxes)
   ASSERT_NEAR(static_cast<double>(states.size()), 51.0, 2.0);
   EXPECT_EQ(states.front().head<3>().norm(), 0.0);
   EXPECT_NEAR(states.front()[3], 0.0, 1e-9);
-  EXPECT_NEAR(states[40][3], 40 * 0.2 * M_PI / 180.0, 1e-6) << "turns to the left";
+  EXPECT_NEAR(states[40][3], 40 * 0.2 * kPi / 180.0, 1e-6) << "turns to the left";
   EXPECT_NEAR(states[40][2], 2.0, 1e-3) << "climbs";
   EXPECT_GT(states[40][0], 38.0) << "goes ahead";
   EXPECT_GT(states[40][1], 1.0) << "and to the left";

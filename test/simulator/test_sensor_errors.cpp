@@ -2,6 +2,7 @@
 
 #include "sensor_errors.h"
 #include "simulation.h"
+#include "support/constants.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,9 @@ namespace pcl_floam::simulator {
 
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
+using pcl_floam::test::kPi;
+
+constexpr double kDegree = kPi / 180.0;
 
 SimulationOptions roomWith(const GivenErrors& errors)
 {
@@ -46,7 +49,7 @@ std::vector<Difference> differences(const Simulation& simulation, const Sweep& s
     result.push_back(
         {sweep.cloud[i].ring, measured.norm() - exact.norm(),
          std::asin(measured.z() / measured.norm()) - std::asin(exact.z() / exact.norm()),
-         std::remainder(std::atan2(measured.y(), measured.x()) - std::atan2(exact.y(), exact.x()), 2.0 * M_PI),
+         std::remainder(std::atan2(measured.y(), measured.x()) - std::atan2(exact.y(), exact.x()), 2.0 * kPi),
          exact.norm()});
   }
   return result;
@@ -171,7 +174,7 @@ TEST(SensorErrors, ByTheirOwnClockLasersFireAtOtherAnglesInEachTurn)
   EXPECT_EQ(firstAzimuth(locked, 1), firstAzimuth(locked, 2));
   options.errors["firing-phase"] = 1.0;
   Simulation free(options);
-  const float step = static_cast<float>(2.0 * M_PI / free.sensor().columns);
+  const float step = static_cast<float>(2.0 * kPi / free.sensor().columns);
   EXPECT_NE(firstAzimuth(free, 1), firstAzimuth(free, 2));
   EXPECT_NEAR(firstAzimuth(free, 1), firstAzimuth(free, 2), step);
   for (const Difference& one : differencesOf(options)) {

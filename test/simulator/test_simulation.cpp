@@ -1,6 +1,7 @@
 // The laws that the simulator's sweeps and poses obey.
 
 #include "simulation.h"
+#include "support/constants.h"
 #include "world.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,8 @@
 namespace pcl_floam::simulator {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 SimulationOptions optionsFor(const std::string& world, std::uint64_t seed = 1)
 {
@@ -160,7 +163,7 @@ TEST(Simulation, HandheldTurnsAtUpTo120DegreesASecond)
     for (double t = 0.0; t < motion.duration(); t += 0.01) {
       peak = std::max(peak, rotationAngle((motion.pose(t).inverse() * motion.pose(t + 0.01)).rotation) / 0.01);
     }
-    EXPECT_NEAR(peak * 180.0 / M_PI, 120.0, 3.0) << "seed " << seed;
+    EXPECT_NEAR(peak * 180.0 / kPi, 120.0, 3.0) << "seed " << seed;
   }
 }
 
@@ -240,9 +243,9 @@ TEST(Simulation, HeadsTurnBothWays)
     const double sense = rotation == HeadRotation::clockwise ? -1.0 : 1.0;
     for (const PointXYZIRT& point : simulation.sweep(0).cloud) {
       // Looks forward at the middle of the sweep.
-      const double expected = sense * 2.0 * M_PI * (static_cast<double>(point.time) / 0.1 - 0.5);
+      const double expected = sense * 2.0 * kPi * (static_cast<double>(point.time) / 0.1 - 0.5);
       const double azimuth = std::atan2(point.y, point.x);
-      ASSERT_NEAR(std::remainder(azimuth - expected, 2.0 * M_PI), 0.0, 1e-4);
+      ASSERT_NEAR(std::remainder(azimuth - expected, 2.0 * kPi), 0.0, 1e-4);
     }
   }
 }

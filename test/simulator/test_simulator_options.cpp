@@ -1,6 +1,7 @@
 // What the options of the simulator do to its sweeps and worlds.
 
 #include "simulation.h"
+#include "support/constants.h"
 #include "world.h"
 
 #include <gtest/gtest.h>
@@ -13,6 +14,8 @@
 namespace pcl_floam::simulator {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 SimulationOptions optionsFor(const std::string& world)
 {
@@ -42,7 +45,7 @@ double shareOfView(const Sweep& sweep, float range)
   std::array<bool, 360> seen{};
   for (std::size_t i = 0; i < sweep.cloud.size(); ++i) {
     if (sweep.moving[i] != 0 && sweep.cloud[i].getVector3fMap().norm() < range) {
-      const double degrees = std::atan2(sweep.cloud[i].y, sweep.cloud[i].x) * 180.0 / M_PI;
+      const double degrees = std::atan2(sweep.cloud[i].y, sweep.cloud[i].x) * 180.0 / kPi;
       seen[static_cast<std::size_t>(degrees + 360.0) % 360] = true;
     }
   }
@@ -75,7 +78,7 @@ TEST(SimulatorOptions, NothingIsSeenOutsideTheFieldOfView)
   Simulation narrow(options);
   const Sweep sweep = narrow.sweep(0);
   for (const PointXYZIRT& point : sweep.cloud) {
-    ASSERT_LE(std::abs(std::atan2(point.y, point.x)), 60.01 * M_PI / 180.0);
+    ASSERT_LE(std::abs(std::atan2(point.y, point.x)), 60.01 * kPi / 180.0);
   }
   const auto all = static_cast<double>(whole.sweep(0).cloud.size());
   EXPECT_NEAR(static_cast<double>(sweep.cloud.size()) / all, 1.0 / 3.0, 0.02);

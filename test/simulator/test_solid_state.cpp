@@ -1,6 +1,7 @@
 // Lidars whose head does not turn: their views, and the odometry that follows them without being told.
 
 #include "simulation.h"
+#include "support/constants.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -12,6 +13,8 @@
 #include <string>
 
 namespace pcl_floam::simulator {
+
+using pcl_floam::test::kPi;
 
 /// A sensor and what its data sheet says of it.
 struct SolidStateView {
@@ -51,8 +54,8 @@ TEST_P(SolidState, FillsTheViewOfItsDataSheet)
   double below = 90.0;
   double above = -90.0;
   for (const PointXYZIRT& point : sweep.cloud) {
-    const double azimuth = std::atan2(point.y, point.x) * 180.0 / M_PI;
-    const double elevation = std::atan2(point.z, std::hypot(point.x, point.y)) * 180.0 / M_PI;
+    const double azimuth = std::atan2(point.y, point.x) * 180.0 / kPi;
+    const double elevation = std::atan2(point.z, std::hypot(point.x, point.y)) * 180.0 / kPi;
     left = std::max(left, azimuth);
     right = std::min(right, azimuth);
     below = std::min(below, elevation);

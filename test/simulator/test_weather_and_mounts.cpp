@@ -1,6 +1,7 @@
 // Rain, snow and dust; sensors that are mounted askew; frames that are turned.
 
 #include "simulation.h"
+#include "support/constants.h"
 #include "weather.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +13,8 @@
 namespace pcl_floam::simulator {
 
 namespace {
+
+using pcl_floam::test::kPi;
 
 SimulationOptions tunnel()
 {
@@ -114,7 +117,7 @@ TEST(Weather, DustHidesWhatIsFarAway)
 
 TEST(Mounts, TiltedSensorsSeeTheSameWorld)
 {
-  for (const RollPitchYaw& mount : {RollPitchYaw{M_PI, 0.0, 0.0}, RollPitchYaw{0.3, -0.4, 2.0}}) {
+  for (const RollPitchYaw& mount : {RollPitchYaw{kPi, 0.0, 0.0}, RollPitchYaw{0.3, -0.4, 2.0}}) {
     SimulationOptions options = tunnel();
     const SE3 upright = Simulation(options).worldTSensor(1.0);
     options.mount = mount;
@@ -130,7 +133,7 @@ TEST(TurnedFrames, TurnPointsAndPosesAndLeaveTheWorld)
 {
   SimulationOptions options = tunnel();
   Simulation plain(options);
-  options.turned_frame.roll = M_PI / 2.0;
+  options.turned_frame.roll = kPi / 2.0;
   Simulation turned(options);
   const Sweep a = plain.sweep(2);
   const Sweep b = turned.sweep(2);

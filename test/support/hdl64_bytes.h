@@ -2,6 +2,7 @@
 /// Packets of a Velodyne HDL-64 within four walls, whose lasers are all off in ways of their own; and its calibration.
 #pragma once
 
+#include "support/constants.h"
 #include "support/velodyne_bytes.h"
 
 #include <Eigen/Core>
@@ -58,7 +59,7 @@ inline std::string hdl64Yaml()
   std::ostringstream text;
   text.precision(12);
   text << "num_lasers: 64\ndistance_resolution: 0.002\nlasers:\n";
-  const double radians = M_PI / 180.0;
+  const double radians = kPi / 180.0;
   for (int i = 0; i < 64; ++i) {
     const Hdl64Laser laser = hdl64Laser(i);
     text << "- {laser_id: " << i << ", rot_correction: " << radians * laser.rotation
@@ -74,8 +75,8 @@ inline std::string hdl64Yaml()
 struct Hdl64Beam {
   Hdl64Beam(const Hdl64Laser& laser, double azimuth_degrees)
   {
-    const double angle = (azimuth_degrees - laser.rotation) * M_PI / 180.0;
-    const double elevation = laser.elevation * M_PI / 180.0;
+    const double angle = (azimuth_degrees - laser.rotation) * kPi / 180.0;
+    const double elevation = laser.elevation * kPi / 180.0;
     const Eigen::Vector3d forward(std::sin(angle), std::cos(angle), 0.0);
     const Eigen::Vector3d right(std::cos(angle), -std::sin(angle), 0.0);
     const Eigen::Vector3d up(0.0, 0.0, 1.0);

@@ -5,7 +5,7 @@
 #include "support/synthetic_scan.h"
 
 #include <pcl_floam/common/point_types.h>
-#include <pcl_floam/filters/feature_extractor.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
 
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>

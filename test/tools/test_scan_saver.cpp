@@ -3,6 +3,7 @@
 #include "support/temporary_folder.h"
 
 #include "scan_saver.h"
+#include "support/constants.h"
 
 #include <pcl_floam/common/point_types.h>
 #include <pcl_floam/io/scan_source.h>
@@ -20,6 +21,8 @@
 namespace pcl_floam::tools {
 namespace {
 
+using pcl_floam::test::kPi;
+
 constexpr double kRadius = 10.0;  // m
 
 /// A scan of sixteen rings, column by column, whose points have no times.
@@ -27,7 +30,7 @@ pcl::PCLPointCloud2 scan()
 {
   pcl::PointCloud<PointXYZIRT> cloud;
   for (int column = 0; column < 900; ++column) {
-    const double azimuth = M_PI - 2.0 * M_PI * column / 900.0;
+    const double azimuth = kPi - 2.0 * kPi * column / 900.0;
     for (int ring = 0; ring < 16; ++ring) {
       cloud.push_back({static_cast<float>(kRadius * std::cos(azimuth)), static_cast<float>(kRadius * std::sin(azimuth)),
                        static_cast<float>(0.35 * (ring - 8)), 0.0F, static_cast<std::uint16_t>(ring), 0.0F});

@@ -2,9 +2,9 @@
 /// Edge and plane features as a PCL filter.
 #pragma once
 
-#include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/filters/feature_kind.h>
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
+#include <pcl_floam/filters/core/feature_kind.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 
 #include <pcl/filters/filter_indices.h>
 

@@ -2,11 +2,11 @@
 /// The undoing of a sweep's distortion as a PCL filter.
 #pragma once
 
-#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/scan_timing.h>
+#include <pcl_floam/filters/core/sensor_model.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
-#include <pcl_floam/filters/sensor_model.h>
-#include <pcl_floam/filters/sweep_motion.h>
 
 #include <pcl/filters/filter.h>
 

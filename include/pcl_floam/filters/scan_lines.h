@@ -2,8 +2,8 @@
 /// Who is a point's neighbour: its scan line m and its place n within the line.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 
 #include <cstddef>
 #include <cstdint>

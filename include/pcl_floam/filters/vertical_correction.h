@@ -2,7 +2,7 @@
 /// Correction of a sensor's vertical calibration, as a PCL filter.
 #pragma once
 
-#include <pcl_floam/filters/vertical_angle.h>
+#include <pcl_floam/filters/core/vertical_angle.h>
 
 #include <pcl/filters/filter.h>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/feature_kind.h>
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/map/neighbor_search.h>
+#include <pcl_floam/filters/core/feature_kind.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/map/core/neighbor_search.h>
 
 #include <pcl/memory.h>
 #include <pcl/point_cloud.h>

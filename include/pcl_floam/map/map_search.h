@@ -2,7 +2,7 @@
 /// A layer of the map as a search structure of PCL's.
 #pragma once
 
-#include <pcl_floam/map/finite_search.h>
+#include <pcl_floam/map/core/finite_search.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 
 namespace pcl_floam {

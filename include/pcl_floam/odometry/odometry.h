@@ -2,12 +2,12 @@
 /// The paper's system: from one scan after another to a trajectory and a map.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 #include <pcl_floam/motion/motion_hint.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
+#include <pcl_floam/odometry/core/odometry_report.h>
 #include <pcl_floam/odometry/odometry_components.h>
-#include <pcl_floam/odometry/odometry_parameters.h>
-#include <pcl_floam/odometry/odometry_report.h>
 
 #include <pcl/memory.h>
 #include <pcl/point_cloud.h>

@@ -2,10 +2,10 @@
 /// Objects of one's own in place of the odometry's.
 #pragma once
 
-#include <pcl_floam/filters/scan_points.h>
-#include <pcl_floam/map/keyframe_policy.h>
-#include <pcl_floam/map/surface_map.h>
-#include <pcl_floam/registration/pose_factor.h>
+#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/map/core/keyframe_policy.h>
+#include <pcl_floam/map/core/surface_map.h>
+#include <pcl_floam/registration/core/pose_factor.h>
 
 #include <functional>
 #include <vector>

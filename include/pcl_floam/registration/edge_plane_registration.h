@@ -2,11 +2,11 @@
 /// The pose estimation as a PCL registration.
 #pragma once
 
-#include <pcl_floam/filters/feature_extractor.h>
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/filters/core/feature_extractor.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/registration/cloud_registration.h>
-#include <pcl_floam/registration/feature_registration.h>
+#include <pcl_floam/registration/core/cloud_registration.h>
+#include <pcl_floam/registration/core/feature_registration.h>
 
 #include <pcl/console/print.h>
 #include <pcl/PCLPointCloud2.h>

@@ -2,7 +2,7 @@
 
 #include "io/messages/scan_messages.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 
 #include <algorithm>
 #include <array>

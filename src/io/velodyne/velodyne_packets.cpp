@@ -1,5 +1,6 @@
 #include "io/velodyne/velodyne_packets.h"
 
+#include "common/pi.h"
 #include "io/messages/scan_messages.h"
 
 #include <algorithm>
@@ -46,7 +47,7 @@ std::array<Laser, 16> vlp16Lasers()
                                                 5.1,  -6.6, 3.7, -8.1, 2.2, -9.7, 0.7, -11.2};
   std::array<Laser, 16> lasers;
   for (std::size_t i = 0; i < lasers.size(); ++i) {
-    lasers[i] = {kDegrees[i] * M_PI / 180.0, 1e-3 * kMillimetres[i],
+    lasers[i] = {kDegrees[i] * kPi / 180.0, 1e-3 * kMillimetres[i],
                  static_cast<std::uint16_t>(std::lround((kDegrees[i] + 15.0) / 2.0))};
   }
   return lasers;
@@ -59,7 +60,7 @@ std::array<Laser, 32> hdl32Lasers()
   constexpr double kLowest = -92.0 / 3.0;  // degrees
   for (std::size_t i = 0; i < lasers.size(); ++i) {
     const std::size_t ring = i / 2 + (i % 2 == 0 ? 0 : 16);
-    lasers[i] = {(kLowest + 4.0 / 3.0 * static_cast<double>(ring)) * M_PI / 180.0, 0.0,
+    lasers[i] = {(kLowest + 4.0 / 3.0 * static_cast<double>(ring)) * kPi / 180.0, 0.0,
                  static_cast<std::uint16_t>(ring)};
   }
   return lasers;
@@ -83,7 +84,7 @@ const std::vector<Direction>& directions()
   static const std::vector<Direction> table = [] {
     std::vector<Direction> all;
     for (int i = 0; i < kHundredths; ++i) {
-      const double angle = i * M_PI / (0.5 * kHundredths);
+      const double angle = i * kPi / (0.5 * kHundredths);
       all.push_back({static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))});
     }
     return all;
@@ -226,7 +227,7 @@ void VelodyneCloudBuilder::addHdl64(const VelodynePacket& packet, const Velodyne
 {
   constexpr double kFiringPeriod = 48e-6;      // s; 3472 packets a second of six firings
   constexpr std::size_t kBlocksPerFiring = 2;  // upper and lower lasers
-  constexpr double kRadians = M_PI / (0.5 * kHundredths);
+  constexpr double kRadians = kPi / (0.5 * kHundredths);
   for (std::size_t block = blocks.begin; block < blocks.end; ++block) {
     const std::size_t first = packet.flag(block) == kLowerBlockFlag ? kReturns : 0;
     const std::size_t firing = block / kBlocksPerFiring;

@@ -1,8 +1,9 @@
 // Packets of Velodyne's sensors, captured or recorded as messages.
+#include "support/constants.h"
 #include "support/temporary_folder.h"
 #include "support/velodyne_bytes.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <gtest/gtest.h>
@@ -26,10 +27,10 @@ void expectRoundWall(const pcl::PCLPointCloud2& cloud, const VelodyneSetting& s,
     ASSERT_NEAR(std::sqrt(x * x + y * y + z * z), s.range, 0.013);
     const int ring = static_cast<int>(view.ring.read(view.point(i)));
     const double elevation = s.hdl32 ? -92.0 / 3.0 + 4.0 / 3.0 * ring : -15.0 + 2.0 * ring;
-    ASSERT_NEAR(std::atan2(z, std::hypot(x, y)) * 180.0 / M_PI, elevation, 0.08);
+    ASSERT_NEAR(std::atan2(z, std::hypot(x, y)) * 180.0 / kPi, elevation, 0.08);
     rings.insert(ring);
     const double time = view.time.read(view.point(i)) - first_time;
-    const double turned = std::fmod(-std::atan2(y, x) / (2.0 * M_PI) + 2.0, 1.0);
+    const double turned = std::fmod(-std::atan2(y, x) / (2.0 * kPi) + 2.0, 1.0);
     const double expected = std::fmod(s.turns_per_second * time + s.first_degrees / 360.0, 1.0);
     ASSERT_LT(std::abs(std::remainder(turned - expected, 1.0)), 0.02) << "time " << time;
   }

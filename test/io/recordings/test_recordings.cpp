@@ -3,7 +3,7 @@
 #include "support/recording_bytes.h"
 #include "support/temporary_folder.h"
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/io/scan_source.h>
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // EdgePlaneRegistration: one registration from input to result.
 #pragma once
 
-#include <pcl_floam/registration/cloud_features.h>
+#include <pcl_floam/registration/core/cloud_features.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // EdgePlaneRegistration: settings and input.
 #pragma once
 
-#include <pcl_floam/map/finite_search.h>
+#include <pcl_floam/map/core/finite_search.h>
 
 #include <algorithm>
 #include <stdexcept>

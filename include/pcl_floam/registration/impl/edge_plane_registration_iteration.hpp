@@ -1,7 +1,7 @@
 // EdgePlaneRegistration: what ICP's settings ask for in each iteration, and its convergence criteria.
 #pragma once
 
-#include <pcl_floam/map/finite_search.h>
+#include <pcl_floam/map/core/finite_search.h>
 
 #include <pcl/conversions.h>
 

@@ -2,23 +2,23 @@
 /// Every setting of the odometry, with its default.
 #pragma once
 
-#include <pcl_floam/filters/feature_parameters.h>
-#include <pcl_floam/filters/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
+#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/scan_timing.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
-#include <pcl_floam/filters/sensor_model.h>
-#include <pcl_floam/map/keyframe_policy.h>
+#include <pcl_floam/map/core/keyframe_policy.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
-#include <pcl_floam/odometry/odometry_engine.h>
-#include <pcl_floam/registration/registration_parameters.h>
+#include <pcl_floam/odometry/core/odometry_engine.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
 
 namespace pcl_floam {
 
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
   OdometryEngine engine = OdometryEngine::surfaces;
-  /// Default "auto": scan lines where a scan has them, neighbourhoods in space otherwise. The engine `features` cannot do
-  /// without scan lines.
+  /// Default "auto": scan lines where a scan has them, neighbourhoods in space otherwise. The engine `features` cannot
+  /// do without scan lines.
   SensorModel sensor;
   ScanTimingSource timing_source = ScanTimingSource::automatic;
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the

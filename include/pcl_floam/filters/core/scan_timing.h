@@ -2,7 +2,7 @@
 /// When within the sweep each point was measured.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 
 #include <algorithm>

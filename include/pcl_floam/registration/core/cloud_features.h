@@ -2,10 +2,10 @@
 /// From clouds to what the pose estimation works on.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/filters/feature_parameters.h>
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/filters/sensor_model.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/filters/core/sensor_model.h>
 
 #include <cstdint>
 #include <vector>

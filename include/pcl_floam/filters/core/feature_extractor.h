@@ -2,11 +2,11 @@
 /// Edges and planes of one scan, for every point type: the core of \ref pcl_floam::FeatureExtraction.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
-#include <pcl_floam/filters/feature_parameters.h>
-#include <pcl_floam/filters/features.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/feature_parameters.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -2,9 +2,9 @@
 /// The returns of one scan as registration and map take them, and a choice of them that is even in space.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
 
 #include <array>
 #include <cstddef>

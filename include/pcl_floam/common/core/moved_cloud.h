@@ -2,7 +2,7 @@
 /// A cloud of any point type in another frame.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/common/se3.h>
 
 #include <cstdint>

@@ -3,11 +3,11 @@
 /// without scan lines.
 #pragma once
 
-#include <pcl_floam/common/cloud_view.h>
+#include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/registration/pose_factor.h>
-#include <pcl_floam/registration/registration_parameters.h>
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/registration/core/pose_factor.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <cstdint>
 #include <functional>

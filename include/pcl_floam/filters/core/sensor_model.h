@@ -17,9 +17,9 @@ struct SensorModel {
   [[nodiscard]] bool isKnown() const { return !elevations.empty(); }
 };
 
-/// The model of a sensor by name: auto, solid-state (without scan lines), vlp16, vlp32c, hdl32, hdl64, os32, os64, os128 (OS1; also os0-32 to
-/// os2-128), pandarxt16, pandarxt32. Elevations are the nominal values of the makers' manuals.
-/// \throws std::invalid_argument for an unknown name; the message lists the known ones.
+/// The model of a sensor by name: auto, solid-state (without scan lines), vlp16, vlp32c, hdl32, hdl64, os32, os64,
+/// os128 (OS1; also os0-32 to os2-128), pandarxt16, pandarxt32. Elevations are the nominal values of the makers'
+/// manuals. \throws std::invalid_argument for an unknown name; the message lists the known ones.
 [[nodiscard]] SensorModel sensorModel(std::string_view name);
 
 /// The names that \ref sensorModel knows.

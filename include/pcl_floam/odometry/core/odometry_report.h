@@ -3,10 +3,10 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/scan_lines.h>
-#include <pcl_floam/filters/scan_timing.h>
-#include <pcl_floam/odometry/odometry_engine.h>
-#include <pcl_floam/registration/registration_report.h>
+#include <pcl_floam/odometry/core/odometry_engine.h>
+#include <pcl_floam/registration/core/registration_report.h>
 
 #include <array>
 #include <cstdint>
@@ -79,7 +79,7 @@ struct OdometryReport {
   /// 4 m a period; what was wrong before that is not in it. By features
   /// weak ones have a variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
-  OdometryEngine engine = OdometryEngine::surfaces;  ///< what the scan was registered by
+  OdometryEngine engine = OdometryEngine::surfaces;           ///< what the scan was registered by
   ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why the scan was worked from space, not scan lines
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;

@@ -2,7 +2,7 @@
 /// Correction of a sensor's vertical calibration: the core of \ref pcl_floam::VerticalCorrection.
 #pragma once
 
-#include <pcl_floam/filters/features.h>
+#include <pcl_floam/filters/core/features.h>
 
 #include <cstddef>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/features.h>
+#include <pcl_floam/filters/core/features.h>
 
 #include <vector>
 

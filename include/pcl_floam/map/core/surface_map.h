@@ -2,7 +2,7 @@
 /// A map that an odometry registers with and adds to: the interface for maps of one's own.
 #pragma once
 
-#include <pcl_floam/map/surface.h>
+#include <pcl_floam/map/core/surface.h>
 
 #include <Eigen/Core>
 
@@ -41,7 +41,7 @@ public:
   virtual void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) = 0;
 
   /// Forgets what is farther than \p radius (m) from \p center; whole cells, or nothing if the map need not be small.
-  virtual void crop(const Eigen::Vector3d& center, double radius) = 0;
+  virtual void crop(const Eigen::Vector3d& /*center*/, double /*radius*/) {}
 };
 
 }  // namespace pcl_floam

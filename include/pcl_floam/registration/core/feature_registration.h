@@ -4,12 +4,12 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/features.h>
-#include <pcl_floam/map/neighbor_search.h>
-#include <pcl_floam/registration/pose_factor.h>
-#include <pcl_floam/registration/registration_parameters.h>
-#include <pcl_floam/registration/registration_report.h>
-#include <pcl_floam/registration/sweep_model.h>
+#include <pcl_floam/filters/core/features.h>
+#include <pcl_floam/map/core/neighbor_search.h>
+#include <pcl_floam/registration/core/pose_factor.h>
+#include <pcl_floam/registration/core/registration_parameters.h>
+#include <pcl_floam/registration/core/registration_report.h>
+#include <pcl_floam/registration/core/sweep_model.h>
 
 #include <functional>
 #include <vector>

@@ -1,0 +1,9 @@
+/// \file pi.h
+/// The number.
+#pragma once
+
+namespace pcl_floam {
+
+inline constexpr double kPi = 3.14159265358979323846;
+
+}  // namespace pcl_floam
