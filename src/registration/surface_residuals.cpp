@@ -110,6 +110,20 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& e
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
+/// \param undistorted the point as seen from mid-sweep
+PlacedPoint SurfaceResiduals::placedAt(const Eigen::Vector3d& undistorted, const ScanPoint& point) const
+{
+  const SE3& pose = sensor.pose();
+  PlacedPoint placed;
+  placed.arm = pose.rotation * undistorted;
+  placed.place = pose.translation + placed.arm;
+  placed.since_middle = periods * sensor.sinceReference(static_cast<double>(point.time));
+  if (!weighs_evidence) {
+    placed.run = pose.rotation * Eigen::Vector3f::Map(point.run.data()).cast<double>();
+  }
+  return placed;
+}
+
 /// \param found before, of all points of the term; nullptr: it is not kept
 SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
                                       FoundSurface* found) const
@@ -124,20 +138,14 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   ResidualRows rows;
   ResidualRows nearest;
   ResidualRows noise;  // what normals and lines' directions that are off add to H
-  const SE3& pose = sensor.pose();
   const ScanPoint* points = term.points->data() + begin * stride;
   sensor.undistorted(points, stride, end - begin, places.data());
   for (std::size_t i = 0; i < end - begin; ++i) {
-    PlacedPoint& p = placed[i];
-    p.arm = pose.rotation * places[i];
-    p.place = places[i] = pose.translation + p.arm;
-    p.since_middle = periods * sensor.sinceReference(static_cast<double>(points[i * stride].time));
+    placed[i] = placedAt(places[i], points[i * stride]);
+    places[i] = placed[i].place;
     // At rest a laser draws the same curve again, place by place: what is no information about the pose is evidence
     // for it.
     lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
-    if (!weighs_evidence) {
-      p.run = pose.rotation * Eigen::Vector3f::Map(points[i * stride].run.data()).cast<double>();
-    }
   }
   if (found == nullptr) {
     term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());

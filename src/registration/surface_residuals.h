@@ -73,6 +73,7 @@ struct SurfaceResiduals {
 private:
   [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
                                     FoundSurface* found) const;
+  [[nodiscard]] PlacedPoint placedAt(const Eigen::Vector3d& undistorted, const ScanPoint& point) const;
   void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
                 SurfaceSums& sums) const;
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, ResidualRows& noise,

@@ -177,7 +177,11 @@ TEST(EdgePlaneRegistration, FeaturesMeetThoseOfTheTargetAlsoAfterTwoCloudsHaveMe
   Cloud output;
   registration.align(output);
   EXPECT_GT(registration.report().point_correspondences, 0);
-  registration.setSourceFeatures(featuresOf(toCloud(sweepRoom(Room(), Lidar(), kOther))));
+  EXPECT_EQ(registration.getSourceFeatures(), nullptr);
+  const FeatureSet features = featuresOf(toCloud(sweepRoom(Room(), Lidar(), kOther)));
+  registration.setSourceFeatures(features);
+  ASSERT_NE(registration.getSourceFeatures(), nullptr);
+  EXPECT_EQ(registration.getSourceFeatures()->planes.size(), features.planes.size());
   registration.align(output);
   ASSERT_TRUE(registration.hasConverged());
   EXPECT_EQ(registration.report().point_correspondences, 0);

@@ -54,20 +54,25 @@ TEST(PlaneFit, FindsAPlane)
   EXPECT_NEAR(normal.dot(plane->center - through), 0.0, 1e-6);
 }
 
+/// Points of a piece of surface somewhere, up to so thick.
+std::vector<Eigen::Vector3d> patch(std::mt19937& random, int count, double thickness)
+{
+  const Eigen::Matrix3d axes = expSO3(randomTwist(random, 0.0, 2.0).tail<3>());
+  const Eigen::Vector3d center = randomTwist(random, 1.0, 0.0).head<3>();
+  std::vector<Eigen::Vector3d> points;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d spread(uniform(random, 0.5), uniform(random, 0.2), uniform(random, thickness));
+    points.push_back(center + axes * spread);
+  }
+  return points;
+}
+
 TEST(PlaneFit, IsThatOfTheEigenvectors)
 {
   std::mt19937 random(9);
   int planes = 0;
   for (int n = 0; n < 2000; ++n) {
-    const Eigen::Matrix3d axes = expSO3(randomTwist(random, 0.0, 2.0).tail<3>());
-    const Eigen::Vector3d center = randomTwist(random, 1.0, 0.0).head<3>();
-    std::vector<Eigen::Vector3d> points;
-    for (int i = 0; i < 5 + n % 4; ++i) {
-      const Eigen::Vector3d spread(uniform(random, 0.5), uniform(random, 0.2),
-                                   uniform(random, n % 2 == 0 ? 0.01 : 0.05));
-      points.push_back(center + axes * spread);
-    }
-    const Neighbors neighbors = neighborsAt(points);
+    const Neighbors neighbors = neighborsAt(patch(random, 5 + n % 4, n % 2 == 0 ? 0.01 : 0.05));
     Eigen::Matrix3Xd offsets(3, neighbors.count);
     for (int i = 0; i < neighbors.count; ++i) {
       offsets.col(i) = neighbors[i].offset.cast<double>();

@@ -74,10 +74,6 @@ TEST_P(FastMotion, IsFollowedFromTheFirstScanOn)
     last_but_one = last;
     last = truth;
   }
-  RecordProperty("fastest_turn_rad_per_s", std::to_string(fastest_turn));
-  RecordProperty("acceleration_m_per_s2", std::to_string(acceleration));
-  RecordProperty("farthest_m", std::to_string(farthest));
-  RecordProperty("farthest_turned_rad", std::to_string(farthest_turned));
   EXPECT_GT(fastest_turn, 120.0 * kPi / 180.0);  // else nothing was shown
   EXPECT_GT(acceleration, 5.0);
   EXPECT_LT(farthest, 0.06);

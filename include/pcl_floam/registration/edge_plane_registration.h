@@ -118,6 +118,8 @@ public:
   /// Features to register in place of those of the source cloud (which is still the one that align() transforms).
   void setSourceFeatures(const FeatureSet& features);
   void clearSourceFeatures();
+  /// Null if none are set.
+  [[nodiscard]] const FeatureSet* getSourceFeatures() const { return source_features_ ? &*source_features_ : nullptr; }
 
   /// A map to register against in place of the target cloud; null to go back to that. The base class still needs a
   /// target cloud for align() and getFitnessScore(): while none is set, the map's plane layer stands in for it.
