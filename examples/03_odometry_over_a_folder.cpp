@@ -8,6 +8,7 @@
 #include <pcl_floam/odometry/odometry.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <iostream>
 #include <iterator>
 #include <vector>
@@ -21,8 +22,8 @@ try {
   for (std::size_t i = 0; i < scans.size(); ++i) {
     scans.read(i, scan);
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
-    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
-              << report.world_T_sensor.translation.transpose() << '\n';
+    std::cout << std::fixed << std::setprecision(2) << scans.name(i) << ": " << toString(report.state) << ", at "
+              << report.world_T_sensor.translation.transpose() << " m\n";
     // After a start among traffic, and where the sensor has come to rest, poses are known better later: here are those
     // just before this one.
     const std::vector<pcl_floam::SE3>& corrected = report.corrected_poses;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <iomanip>
 #include <iostream>
 
 namespace {
@@ -46,7 +47,7 @@ try {
     const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
     localized += report.state == pcl_floam::TrackingState::tracked ? 1 : 0;
     const Eigen::Matrix3d position_covariance = report.covariance.topLeftCorner<3, 3>();
-    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
+    std::cout << std::fixed << std::setprecision(3) << scans.name(i) << ": " << toString(report.state) << ", at "
               << report.world_T_sensor.translation.transpose() << " +- " << std::sqrt(position_covariance.trace())
               << " m\n";
   }

@@ -14,15 +14,20 @@ class NdtMap : public pcl_floam::SurfaceMap {
     Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
     std::uint32_t count = 0;
     std::bitset<128> lasers;  // that have seen it: what one draws by itself, on whatever it hits, is no plane
-    [[nodiscard]] pcl_floam::Surface plane() const
+    [[nodiscard]] pcl_floam::Surface planeFor(std::uint32_t laser) const
     {
+      pcl_floam::Surface plane;
       const Eigen::Vector3d mean = sum / count;
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(outer / count - mean * mean.transpose());
       const Eigen::Vector3d variances = eigen.eigenvalues();  // rising
-      pcl_floam::Surface plane;
-      if (count > 5 && lasers.count() > 1 && variances[0] < 0.2 * variances[1]) {
-        plane = {
-            pcl_floam::SurfaceKind::plane, mean, eigen.eigenvectors().col(0), {}, variances[0], variances[1], count};
+      const std::size_t others = lasers.count() - (lasers.test(laser % 128) ? 1 : 0);
+      if (count > 5 && others > 1 && variances[0] < 0.2 * variances[1]) {
+        plane.kind = pcl_floam::SurfaceKind::plane;
+        plane.center = mean;
+        plane.direction = eigen.eigenvectors().col(0);
+        plane.thickness = variances[0];
+        plane.extent = variances[1];
+        plane.count = count;
       }
       return plane;
     }
@@ -50,12 +55,12 @@ public:
       ++cell.count;
     }
   }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
+  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
             pcl_floam::Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       const auto found = places[i].allFinite() ? cells_.find(keyOf(places[i])) : cells_.end();
-      surfaces[i] = found == cells_.end() ? pcl_floam::Surface() : found->second.plane();
+      surfaces[i] = found == cells_.end() ? pcl_floam::Surface() : found->second.planeFor(lasers[i]);
     }
   }
 };

@@ -4,6 +4,7 @@
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 
+#include <iomanip>
 #include <iostream>
 
 /// Tracks each scan by `track(view, stamp)`, which gives the report, and prints what came of it.
@@ -16,8 +17,8 @@ try {
   for (std::size_t i = 0; i < scans.size(); ++i) {
     scans.read(i, scan);
     const pcl_floam::OdometryReport& report = track(pcl_floam::viewOf(scan), scans.stamp(i));
-    std::cout << scans.name(i) << ": " << toString(report.state) << ", at "
-              << report.world_T_sensor.translation.transpose() << '\n';
+    std::cout << std::fixed << std::setprecision(2) << scans.name(i) << ": " << toString(report.state) << ", at "
+              << report.world_T_sensor.translation.transpose() << " m\n";
   }
   return 0;
 } catch (const pcl_floam::FileError& error) {

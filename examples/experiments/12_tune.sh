@@ -4,7 +4,8 @@
 #
 #   bash examples/experiments/12_tune.sh [--quick] [--against BIN] [--data DIR] [--output DIR]
 #
-# Figures of these drives are no result, and published nowhere.
+# Figures of these drives are no result, and published nowhere. The other build's runs are recorded under this tree's
+# commit.
 PYTHONDONTWRITEBYTECODE=1 PYTHONPATH="$(dirname "$0")" exec python3 /dev/fd/3 "$@" 3<<'PYTHON'
 from support import *
 
@@ -27,7 +28,9 @@ QUICK = 3
 
 
 def told(run):
-    """Scans that are not called tracked, and how many times the median the slowest takes."""
+    """Scans that are not called tracked, and how many times the median the slowest takes; nothing if it ended early."""
+    if not all((run.folder / name).exists() for name in ("scans.csv", "timing.csv")):
+        return {}
     states = list(csv.DictReader((run.folder / "scans.csv").read_text().splitlines()))
     times = [float(row["total_ms"]) for row in csv.DictReader((run.folder / "timing.csv").read_text().splitlines())]
     return {"doubted": sum(row["state"] not in ("tracked", "initialized") for row in states),
@@ -44,8 +47,8 @@ def cells(runs, others):
     own, other = means(runs), means(others) if others else None
     for _, key, digits, factor in FIGURES:
         cell = number(own[key], digits, factor)
-        if other and own[key] is not None and other[key]:
-            cell += f" ({own[key] / other[key]:.2f})"
+        if other and own[key] is not None and other[key] is not None and own[key] != other[key]:
+            cell += f" ({own[key] / other[key]:.2f})" if other[key] else " (0 there)"
         yield cell
 
 

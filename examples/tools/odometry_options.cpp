@@ -45,7 +45,8 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
   app.add_option("--topic", o.topic, "topic of the scans, where a recording has several")->type_name("NAME");
   addNumber(app, "--from", o.from, "N", "first scan to use; the folder's first is 0");
   addNumber(app, "--max-scans", o.max_scans, "N", "use at most so many scans; 0 uses all");
-  app.add_option("--sensor", o.sensor, "lidar that made the scans\n" + wrapped(sensorNames()))
+  app.add_option("--sensor", o.sensor,
+                 "lidar that made the scans; solid-state: scan lines are not\nlooked for\n" + wrapped(sensorNames()))
       ->type_name("NAME")
       ->capture_default_str();
   app.add_option("--elevations", o.elevations, "beams of a lidar not in that list, e.g. -15,-13,-11")
@@ -65,9 +66,9 @@ void addInputOptions(CLI::App& app, OdometryOptions& o)
             "turn every point up by this angle: corrects the\nsensor's calibration; KITTI's needs about 0.205");
 }
 
-void addScanStructureOptions(CLI::App& app, OdometryOptions& o)
+void addTimingOptions(CLI::App& app, OdometryOptions& o)
 {
-  app.option_defaults()->group("Structure of a scan (found automatically)");
+  app.option_defaults()->group("Times within a scan (found automatically)");
   addChoice(app, "--timing", o.parameters.timing_source,
             {{"auto", ScanTimingSource::automatic},
              {"field", ScanTimingSource::time_field},
@@ -233,7 +234,7 @@ void addOptions(CLI::App& app, OdometryOptions& options)
 {
   addInputOptions(app, options);
   addPriorMapOptions(app, options);
-  addScanStructureOptions(app, options);
+  addTimingOptions(app, options);
   addResultOptions(app, options);
   addCompensationOptions(app, options);
   addFeatureOptions(app, options.parameters.features);

@@ -71,7 +71,7 @@ Json matrixOf(const SE3& pose)
 std::string structureReason(const OdometryReport& scan)
 {
   if (scan.scan_lines == 0) {
-    return scan.points > 0 ? toString(scan.scan_line_failure) : "no scan was read";
+    return scan.scan_line_failure != ScanLineFailure::none ? toString(scan.scan_line_failure) : "no scan was read";
   }
   return formatted("%zu scan lines by %s, confidence %.2f", scan.scan_lines, toString(scan.scan_line_source),
                    static_cast<double>(scan.scan_line_confidence));

@@ -1,5 +1,5 @@
 /// \file pi.h
-/// The number.
+/// The one circle number of the library.
 #pragma once
 
 namespace pcl_floam {

@@ -1,3 +1,4 @@
+#include "common/hash.h"
 #include "common/multi_version.h"
 #include "filters/point_times.h"
 #include "filters/scan_returns.h"
@@ -65,8 +66,7 @@ void SpatialSampling::grow()
 /// Where a block is, or where it would come.
 std::size_t SpatialSampling::placeOf(std::uint64_t key) const
 {
-  constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
-  auto i = static_cast<std::size_t>((key * kGolden) >> shift_);
+  std::size_t i = hashOf(key, shift_);
   while (table_[i].key != 0 && table_[i].key != key) {
     i = (i + 1) & (table_.size() - 1);
   }

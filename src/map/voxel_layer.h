@@ -20,7 +20,7 @@ namespace pcl_floam {
 /// Points in a two-level grid: blocks of about a metre, found by hashing, hold one mean point per occupied voxel.
 ///
 /// A block knows the blocks around it, so that one look-up leads to all that is near a query; nothing has to be built
-/// when points are added. Against blocks of 4x4x4 voxels, each found by hashing, a search takes a third of the time.
+/// when points are added.
 class VoxelLayer : public NeighborSearch {
 public:
   /// \param voxel_size m, > 0

@@ -2,6 +2,7 @@
 /// Voxels of several sizes by their integer coordinates: 64-bit keys, open addressing.
 #pragma once
 
+#include "common/hash.h"
 #include "common/prefetch.h"
 
 #include <Eigen/Core>
@@ -115,11 +116,7 @@ private:
     std::uint32_t value = 0;
   };
 
-  [[nodiscard]] std::size_t start(std::uint64_t key) const
-  {
-    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio: spreads all bits upwards
-    return static_cast<std::size_t>((key * kGolden) >> shift_);
-  }
+  [[nodiscard]] std::size_t start(std::uint64_t key) const { return hashOf(key, shift_); }
   [[nodiscard]] std::size_t next(std::size_t i) const { return (i + 1) & (slots_.size() - 1); }
   void place(const Slot& slot)
   {

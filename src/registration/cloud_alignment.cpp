@@ -12,7 +12,7 @@ CloudAlignment::CloudAlignment(const CloudPyramid& source, const CloudPyramid& t
 {
 }
 
-Termination CloudAlignment::align(LevelAlignment& alignment, int most, double epsilon, bool watched)
+Termination CloudAlignment::align(CloudMatching& alignment, int most, double epsilon, bool watched)
 {
   for (iterations_ = 0; iterations_ < most;) {
     sums_ = evaluate(alignment);
@@ -32,7 +32,7 @@ Termination CloudAlignment::align(LevelAlignment& alignment, int most, double ep
   return Termination::iteration_limit;
 }
 
-NormalEquations CloudAlignment::evaluate(LevelAlignment& level) const
+NormalEquations CloudAlignment::evaluate(CloudMatching& level) const
 {
   NormalEquations sums = level.evaluate(pose_, [this](const SE3& pose) { return toFrames(pose); });
   const PoseEquations known = factors_.at(toFrames(pose_), arm());
@@ -49,7 +49,7 @@ void CloudAlignment::move(const Vector6& perturbation)
 }
 
 /// Applies a step. \return true if the user says that it is enough
-bool CloudAlignment::take(const Vector6& step, const LevelAlignment& alignment, bool watched)
+bool CloudAlignment::take(const Vector6& step, const CloudMatching& alignment, bool watched)
 {
   const SE3 before = toFrames(pose_);
   move(step);

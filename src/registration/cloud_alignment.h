@@ -2,9 +2,9 @@
 /// The estimate of one registration of clouds, which goes from level to level.
 #pragma once
 
+#include "registration/cloud_matching.h"
 #include "registration/cloud_pyramid.h"
 #include "registration/information_analysis.h"
-#include "registration/level_alignment.h"
 #include "registration/pose_factors.h"
 
 #include <pcl_floam/common/se3.h>
@@ -23,13 +23,13 @@ public:
 
   /// Iterates until no typical point moves by \p epsilon (m) or \p most iterations were done.
   /// \param watched whether the user sees each iteration, and may end it
-  Termination align(LevelAlignment& alignment, int most, double epsilon, bool watched);
+  Termination align(CloudMatching& alignment, int most, double epsilon, bool watched);
 
   [[nodiscard]] const SE3& pose() const { return pose_; }
   void setPose(const SE3& pose) { pose_ = pose; }
 
   /// What the matches of a level and the factors say of the present pose.
-  [[nodiscard]] NormalEquations evaluate(LevelAlignment& level) const;
+  [[nodiscard]] NormalEquations evaluate(CloudMatching& level) const;
 
   /// Moves by a perturbation, which turns about the source's centroid.
   void move(const Vector6& perturbation);
@@ -50,7 +50,7 @@ public:
   [[nodiscard]] Eigen::Vector3d arm() const { return pose_.rotation * source_T_origin_.translation; }
 
 private:
-  bool take(const Vector6& step, const LevelAlignment& alignment, bool watched);
+  bool take(const Vector6& step, const CloudMatching& alignment, bool watched);
   void lockTranslation();
 
   const CloudRegistrationRun& run_;

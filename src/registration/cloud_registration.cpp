@@ -46,7 +46,7 @@ public:
     if (run_.coarse_first && run_.max_iterations >= kFewestForCoarse) {
       findStart(source_, target_, run_, alignment_);
     }
-    LevelAlignment level(source_.full(), target_.full(), run_, true, along());
+    CloudMatching level(source_.full(), target_.full(), run_, true, along());
     const double epsilon = finestEpsilon(level.spacing());
     report_.termination = alignment_.align(level, run_.max_iterations, epsilon, true);
     report_.iterations = alignment_.iterations();
@@ -62,7 +62,7 @@ public:
   {
     findStart(source_, target_, run_, alignment_);
     const double width = std::max(source_.full().spacing, target_.full().spacing);
-    LevelAlignment level(source_.full(), target_.full(), run_, false, kAlongSurfaces, width);
+    CloudMatching level(source_.full(), target_.full(), run_, false, kAlongSurfaces, width);
     alignment_.align(level, kRoughIterations, kRoughEpsilon * level.spacing(), false);
     return alignment_.toFrames(alignment_.pose());
   }

@@ -1,5 +1,6 @@
 #include "registration/local_shape.h"
 
+#include "common/median.h"
 #include "common/pi.h"
 #include "common/point_moments.h"
 
@@ -72,9 +73,7 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
 /// Points spread evenly at distance s on a surface have k neighbours within s * sqrt(k / pi).
 double spacingFrom(std::vector<float>& radii)
 {
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  return std::sqrt(kPi / kNeighbors) * static_cast<double>(*middle);
+  return std::sqrt(kPi / kNeighbors) * static_cast<double>(medianOf(radii));
 }
 
 /// Distance of the farthest neighbour, m.

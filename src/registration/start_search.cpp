@@ -40,7 +40,7 @@ std::vector<CloudLevel> thinnedAlike(const CloudPyramid& source, const CloudPyra
 double costAt(const SE3& pose, const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run,
               const CloudAlignment& alignment)
 {
-  LevelAlignment level(source.full(), target.full(), run, false, kAlongSurfaces);
+  CloudMatching level(source.full(), target.full(), run, false, kAlongSurfaces);
   const NormalEquations sums = level.evaluate(pose, [&](const SE3& p) { return alignment.toFrames(p); });
   return sums.count() >= run.min_correspondences ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
 }
@@ -53,14 +53,14 @@ void findStart(const CloudPyramid& source, const CloudPyramid& target, const Clo
   const SE3 guess = alignment.pose();
   const std::vector<CloudLevel>& targets = target.thinnedLevels();
   const std::vector<CloudLevel> sources = thinnedAlike(source, target, run.threads);
-  const auto align = [&](LevelAlignment level) {
+  const auto align = [&](CloudMatching level) {
     if (2.0 * level.spacing() <= run.max_distance) {  // else its points' neighbours are farther than matches may be
       alignment.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
     }
   };
   const auto drawSurfaces = [&] {
     for (std::size_t i = sources.size(); i-- > 0;) {
-      align(LevelAlignment(sources[i], targets[i], run, false, kAlongSurfaces, kWidth * targets[i].voxel));
+      align(CloudMatching(sources[i], targets[i], run, false, kAlongSurfaces, kWidth * targets[i].voxel));
     }
   };
   SE3 best = guess;
@@ -76,10 +76,10 @@ void findStart(const CloudPyramid& source, const CloudPyramid& target, const Clo
   propose();
   alignment.setPose(guess);
   for (std::size_t i = sources.size(); i-- > 0;) {
-    align(LevelAlignment(sources[i], targets[i], run, false, 1.0));
+    align(CloudMatching(sources[i], targets[i], run, false, 1.0));
   }
   if (std::max(source.full().tree.size(), target.full().tree.size()) <= kMostPoints) {
-    align(LevelAlignment(source.full(), target.full(), run, false, 1.0));
+    align(CloudMatching(source.full(), target.full(), run, false, 1.0));
   }
   drawSurfaces();
   propose();

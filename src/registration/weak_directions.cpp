@@ -16,7 +16,7 @@ constexpr double kCertain = 3.0;
 
 }  // namespace
 
-WeakDirections::WeakDirections(CloudAlignment& alignment, LevelAlignment& level, double weak)
+WeakDirections::WeakDirections(CloudAlignment& alignment, CloudMatching& level, double weak)
     : alignment_(alignment), level_(level), weak_(weak)
 {
 }

@@ -15,7 +15,7 @@ namespace pcl_floam {
 class WeakDirections {
 public:
   /// \param weak share of the largest eigenvalue below which surfaces do not hold a direction
-  WeakDirections(CloudAlignment& alignment, LevelAlignment& level, double weak);
+  WeakDirections(CloudAlignment& alignment, CloudMatching& level, double weak);
 
   /// Goes along those directions that something holds to where its pull ends, and back to \p guess along the others.
   /// \return whether it came to an end
@@ -30,7 +30,7 @@ private:
   [[nodiscard]] Vector6 step(const SE3& guess, Motions& weak);
 
   CloudAlignment& alignment_;
-  LevelAlignment& level_;
+  CloudMatching& level_;
   double weak_;
 };
 

@@ -55,6 +55,23 @@ TEST(FeatureExtractionFilter, NegativeIsTheComplementAmongFinitePoints)
   }
 }
 
+TEST(FeatureExtractionFilter, SelectsWhatExtractGives)
+{
+  const auto cloud = scanOf(Room());
+  Extraction extraction;
+  extraction.setInputCloud(cloud);
+  FeatureSet features;
+  ASSERT_TRUE(extraction.extract(features));
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    const pcl::Indices selected = filtered(extraction, cloud, kind);
+    std::set<int> extracted;
+    for (const Feature& feature : kind == FeatureKind::edge ? features.edges : features.planes) {
+      extracted.insert(feature.index);
+    }
+    EXPECT_EQ(std::set<int>(selected.begin(), selected.end()), extracted);
+  }
+}
+
 TEST(FeatureExtractionFilter, HonoursIndicesInTheirOrder)
 {
   const auto cloud = scanOf(Room());

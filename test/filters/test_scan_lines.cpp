@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <set>
 
 namespace pcl_floam::test {
@@ -190,6 +189,9 @@ TEST(ScanLines, FailuresHaveReasons)
     cloud.push_back(pcl::PointXYZ(static_cast<float>(uniform(random, 9.0)), static_cast<float>(uniform(random, 9.0)),
                                   static_cast<float>(uniform(random, 9.0))));
   }
+  const auto lines = firingOrder();
+  EXPECT_EQ(find(viewOf(toCloud(lines)), ScanLineSource::automatic, sensorModel("solid-state")).failure,
+            ScanLineFailure::not_looked_for);
   const ScanLines none = find(viewOf(cloud));
   EXPECT_EQ(none.failure, ScanLineFailure::no_line_structure);
   EXPECT_EQ(none.lines(), 0U);

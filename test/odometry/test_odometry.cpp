@@ -13,7 +13,6 @@
 #include <limits>
 #include <optional>
 #include <random>
-#include <thread>
 #include <utility>
 #include <vector>
 

@@ -23,8 +23,6 @@ using test::sweepOf;
 
 namespace {
 
-using pcl_floam::test::kPi;
-
 double distance(const SE3& a, const SE3& b)
 {
   return log(a.inverse() * b).norm();
@@ -188,7 +186,7 @@ TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
   for (const double range : {4.0, 100.0}) {
     std::vector<ScanPoint> points(900);
     for (ScanPoint& point : points) {
-      const double azimuth = test::uniform(random, kPi);
+      const double azimuth = test::uniform(random, test::kPi);
       point.x = static_cast<float>(range * std::cos(azimuth));
       point.y = static_cast<float>(range * std::sin(azimuth));
       point.z = static_cast<float>(Corner::kWall);
@@ -200,7 +198,6 @@ TEST(SurfaceRegistration, AFloorFarAwayTellsLessOfTheHeight)
       near_information = information;
     }
     EXPECT_TRUE(range < 10.0 || information < 0.2 * near_information) << information << " of " << near_information;
-    EXPECT_GT(information, 0.0);
   }
 }
 

@@ -32,6 +32,14 @@ struct SE3 {
   {
   }
 
+  /// A homogeneous matrix: `Eigen::Matrix4f`, as PCL's registrations give it, or `Matrix4d`.
+  template <typename Scalar, int Options>
+  explicit SE3(const Eigen::Matrix<Scalar, 4, 4, Options>& matrix)
+      : rotation(matrix.template topLeftCorner<3, 3>().template cast<double>()),
+        translation(matrix.template topRightCorner<3, 1>().template cast<double>())
+  {
+  }
+
   [[nodiscard]] SE3 inverse() const;
 
   /// The 4x4 homogeneous matrix, last row exactly 0 0 0 1.

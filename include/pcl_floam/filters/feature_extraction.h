@@ -55,7 +55,8 @@ public:
   }
   [[nodiscard]] const FeatureParameters& getParameters() const { return parameters_; }
 
-  /// The sensor's beams, for clouds that neither have a ring field nor keep the sensor's order. Default: unknown.
+  /// The sensor's beams, for clouds that neither have a ring field nor keep the sensor's order. Default: unknown. Of
+  /// one without scan lines there are no features.
   void setSensor(const SensorModel& sensor) { sensor_ = sensor; }
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 

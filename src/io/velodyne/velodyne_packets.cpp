@@ -1,5 +1,6 @@
 #include "io/velodyne/velodyne_packets.h"
 
+#include "common/median.h"
 #include "common/pi.h"
 #include "io/messages/scan_messages.h"
 
@@ -153,10 +154,8 @@ std::optional<VelodyneModel> VelodyneModelFinder::model() const
   }
   // Lost packets make some longer: the median is that of the model.
   std::vector<std::uint32_t> sorted = durations_;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-  const std::uint32_t median = sorted[sorted.size() / 2];
   constexpr std::uint32_t kBetweenModels = 900;  // us; the models take 1327 and 553
-  return median > kBetweenModels ? VelodyneModel::vlp16 : VelodyneModel::hdl32e;
+  return medianOf(sorted) > kBetweenModels ? VelodyneModel::vlp16 : VelodyneModel::hdl32e;
 }
 
 std::string VelodyneModelFinder::problem(const VelodyneCalibration* calibration) const

@@ -21,12 +21,12 @@ struct FeatureParameters {
   int planes_per_sector = 20;  ///< most planes in one sector; 0 to 1000
   float min_range = 0.5F;      ///< m; nearer points are the robot itself. >= 0
   float max_range = 120.0F;    ///< m; > min_range
-  /// m; an edge needs a smoothness of more than this, above the range noise. By `vector_sum` it needs more than 0.35
-  /// times the mean distance to its neighbours as well: 0 on a line, 0.7 at a right-angled corner, 1 at the end of a
-  /// surface. Near the sensor, where many neighbours are averaged, it needs as much less as they leave of the noise.
+  /// m, >= 0; an edge needs a smoothness of more than this, above the range noise. By `vector_sum` it needs more than
+  /// 0.35 times the mean distance to its neighbours as well: 0 on a line, 0.7 at a right-angled corner, 1 at the end of
+  /// a surface. Near the sensor, where many neighbours are averaged, it needs as much less as they leave of the noise.
   /// Reasonable: 0.02 to 0.1
   float edge_threshold = 0.1F;
-  /// m; a plane needs a smoothness of less than this. Reasonable: 0.01 to 0.1
+  /// m, > 0; a plane needs a smoothness of less than this. Reasonable: 0.01 to 0.1
   float plane_threshold = 0.04F;
 };
 

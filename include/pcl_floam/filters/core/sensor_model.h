@@ -11,7 +11,7 @@ namespace pcl_floam {
 /// A lidar: its beams' elevations, if it has beams that turn.
 struct SensorModel {
   std::string name = "auto";      ///< "auto" when nothing is known about the sensor
-  std::vector<float> elevations;  ///< rad above the horizontal, rising; empty for "auto"
+  std::vector<float> elevations;  ///< rad above the horizontal, rising; empty where they are not known
   bool has_scan_lines = true;     ///< whether they are looked for
 
   [[nodiscard]] bool isKnown() const { return !elevations.empty(); }
@@ -19,7 +19,8 @@ struct SensorModel {
 
 /// The model of a sensor by name: auto, solid-state (without scan lines), vlp16, vlp32c, hdl32, hdl64, os32, os64,
 /// os128 (OS1; also os0-32 to os2-128), pandarxt16, pandarxt32. Elevations are the nominal values of the makers'
-/// manuals. \throws std::invalid_argument for an unknown name; the message lists the known ones.
+/// manuals.
+/// \throws std::invalid_argument for an unknown name; the message lists the known ones.
 [[nodiscard]] SensorModel sensorModel(std::string_view name);
 
 /// The names that \ref sensorModel knows.

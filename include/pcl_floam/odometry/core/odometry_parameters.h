@@ -22,9 +22,9 @@ struct OdometryParameters {
   SensorModel sensor;
   ScanTimingSource timing_source = ScanTimingSource::automatic;
   /// Rotation in degrees of every point about p x z, towards +z: corrects a wrong vertical angle of the
-  /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205.
+  /// sensor's calibration. Default 0; KITTI's HDL-64 needs about 0.205. -10 to 10.
   double vertical_correction = 0.0;
-  /// Seconds from one sweep to the next; 0 takes it from the scans' stamps. Matters only to scans whose
+  /// Seconds from one sweep to the next, >= 0; 0 takes it from the scans' stamps. Matters only to scans whose
   /// time field spans less than the period, and to gaps.
   double scan_period = 0.0;
   FeatureParameters features;
@@ -33,7 +33,7 @@ struct OdometryParameters {
   RegistrationParameters registration;
   KeyframePolicy keyframe;
   MapParameters map;
-  int threads = 1;  ///< 1 or more; the result does not depend on it
+  int threads = 1;  ///< 1 to 1024; the result does not depend on it
   /// Registrations of a start, by surfaces, that one scan bears beside those of the motions that are followed: others
   /// are sought and tried, and the first scans are gone through once more from the last ones. What is more is left to
   /// the scans that follow, whose poses are provisional until then. 2 to 1000; counted, not timed, so that the result

@@ -83,7 +83,7 @@ struct OdometryReport {
   ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why the scan was worked from space, not scan lines
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
-  std::size_t scan_lines = 0;
+  std::size_t scan_lines = 0;  ///< 0: it was worked from space
   /// Where nothing tells which way the head turned, it is clockwise, counterclockwise or none, whichever explains the
   /// scans better (by surfaces).
   ScanTimingSource timing_source = ScanTimingSource::none;

@@ -1,4 +1,4 @@
-/// \file level_alignment.h
+/// \file cloud_matching.h
 /// One resolution of a cloud registration: matches, weights, and the step that follows.
 #pragma once
 
@@ -17,13 +17,13 @@
 namespace pcl_floam {
 
 /// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
-class LevelAlignment {
+class CloudMatching {
 public:
   /// \param along how much a direction along a surface counts against the one across it. 1 draws points to points, all
   ///              of them; with less, far matches are left out and large residuals count less
   /// \param width  m; how far off the pose may be: the kernel takes no smaller residual for an outlier
-  LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
-                 double along, double width = 0.0);
+  CloudMatching(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run, bool finest,
+                double along, double width = 0.0);
 
   /// Finds the matches at a pose and sums up what they say of a perturbation on the left that turns about the source's
   /// centroid. A match's weight is that of its three dimensions.

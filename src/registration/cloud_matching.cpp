@@ -1,4 +1,4 @@
-#include "registration/level_alignment.h"
+#include "registration/cloud_matching.h"
 
 #include "common/median.h"
 
@@ -18,8 +18,8 @@ constexpr double kGateMedians = 3.0;
 
 }  // namespace
 
-LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
-                               bool finest, double along, double width)
+CloudMatching::CloudMatching(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
+                             bool finest, double along, double width)
     : source_(source),
       target_(target),
       run_(run),
@@ -35,7 +35,7 @@ LevelAlignment::LevelAlignment(const CloudLevel& source, const CloudLevel& targe
 {
 }
 
-void LevelAlignment::searchNearest(const SE3& pose)
+void CloudMatching::searchNearest(const SE3& pose)
 {
   const auto bound =
       static_cast<float>(std::min(gate_ * gate_, static_cast<double>(std::numeric_limits<float>::max())));
@@ -47,7 +47,7 @@ void LevelAlignment::searchNearest(const SE3& pose)
   }
 }
 
-void LevelAlignment::searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound)
+void CloudMatching::searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound)
 {
   constexpr float kRounding = 1.001F;
   LastSearch& last = last_searches_[i];
@@ -75,7 +75,7 @@ void LevelAlignment::searchNearest(std::size_t i, const Eigen::Vector3f& query, 
   last.nearest = last.found ? found : last.nearest;
 }
 
-void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)
+void CloudMatching::askUsersSearch(const SE3& pose, const SE3& target_T_source)
 {
   std::unordered_map<int, int> position;  // in the tree's order, of the cloud's points
   for (std::size_t j = 0; j < target_.number.size(); ++j) {
@@ -97,7 +97,7 @@ void LevelAlignment::askUsersSearch(const SE3& pose, const SE3& target_T_source)
   }
 }
 
-void LevelAlignment::keepReciprocal(const SE3& pose)
+void CloudMatching::keepReciprocal(const SE3& pose)
 {
   const SE3 back = pose.inverse();
 #pragma omp parallel for num_threads(run_.threads) schedule(dynamic, 1024)
@@ -113,7 +113,7 @@ void LevelAlignment::keepReciprocal(const SE3& pose)
   }
 }
 
-void LevelAlignment::narrow()
+void CloudMatching::narrow()
 {
   if (!isRobust()) {
     return;
@@ -136,7 +136,7 @@ void LevelAlignment::narrow()
 
 /// Whether all matches lie on each other but for rounding. Then there is nothing to reject, and rejectors that compare
 /// distances with their spread would refuse them all.
-bool LevelAlignment::coincide() const
+bool CloudMatching::coincide() const
 {
   float farthest = 0.0F;
   for (std::size_t i = 0; i < match_.size(); ++i) {
@@ -145,7 +145,7 @@ bool LevelAlignment::coincide() const
   return std::sqrt(static_cast<double>(farthest)) <= source_.rounding + target_.rounding;
 }
 
-void LevelAlignment::listMatches()
+void CloudMatching::listMatches()
 {
   matches_.clear();
   for (std::size_t i = 0; i < match_.size(); ++i) {
@@ -158,7 +158,7 @@ void LevelAlignment::listMatches()
             [](const PointMatch& a, const PointMatch& b) { return a.source < b.source; });
 }
 
-void LevelAlignment::keepListed()
+void CloudMatching::keepListed()
 {
   std::unordered_set<int> kept;
   for (const PointMatch& match : matches_) {

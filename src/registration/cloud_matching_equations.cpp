@@ -1,5 +1,5 @@
-// LevelAlignment: what its matches say of the pose.
-#include "registration/level_alignment.h"
+// CloudMatching: what its matches say of the pose.
+#include "registration/cloud_matching.h"
 #include "registration/robust_kernel.h"
 
 #include <Eigen/LU>
@@ -20,7 +20,7 @@ constexpr double kSmallestScale = 1e-4;  ///< of the kernel, in spacings
 
 }  // namespace
 
-LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i) const
+CloudMatching::Residual CloudMatching::residual(const SE3& pose, std::size_t i) const
 {
   const auto j = static_cast<std::size_t>(match_[i]);
   LocalShape turned = source_.shapes[i];
@@ -35,7 +35,7 @@ LevelAlignment::Residual LevelAlignment::residual(const SE3& pose, std::size_t i
   return {difference.cast<float>(), m.cast<float>(), squared};
 }
 
-void LevelAlignment::weigh(const SE3& pose)
+void CloudMatching::weigh(const SE3& pose)
 {
 #pragma omp parallel for num_threads(run_.threads) schedule(static)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
@@ -57,7 +57,7 @@ void LevelAlignment::weigh(const SE3& pose)
   scale_ = std::max(scale_, std::sqrt(static_cast<double>(std::numeric_limits<float>::min())));
 }
 
-void LevelAlignment::accumulate(const SE3& pose, std::size_t i, ResidualRows& rows, NormalEquations& sums) const
+void CloudMatching::accumulate(const SE3& pose, std::size_t i, ResidualRows& rows, NormalEquations& sums) const
 {
   const Residual& r = residuals_[i];
   const auto squared = static_cast<double>(r.squared);
@@ -78,7 +78,7 @@ void LevelAlignment::accumulate(const SE3& pose, std::size_t i, ResidualRows& ro
   sums.plane_inliers += kind == ShapeKind::plane && robust >= 0.5 ? 1 : 0;
 }
 
-NormalEquations LevelAlignment::sum(const SE3& pose) const
+NormalEquations CloudMatching::sum(const SE3& pose) const
 {
   return sumOfChunks(residuals_.size(), kResidualsPerChunk, run_.threads, [&](std::size_t first, std::size_t last) {
     NormalEquations sums;
