@@ -2,8 +2,8 @@
 //
 //   ./03_odometry_over_a_folder FOLDER|RECORDING [TOPIC]
 // prints
-//   000019.pcd: tracked, at     1.31058 -0.00110186  0.00146629
-//   20 scans, 1.31504 m
+//   000019.pcd: tracked, at 1.31 0.00 0.00 m
+//   20 scans, 1.31 m
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 

@@ -2,7 +2,7 @@
 //
 //   ./04_localize_in_a_map MAP SCANS [X Y Z YAW]     (pose of the first scan, in m and degrees; default: the origin)
 // prints
-//   000019.pcd: tracked, at      1.30735  -0.00360642 -0.000837354 +- 0.00576755 m
+//   000019.pcd: tracked, at  1.307 -0.001 -0.001 +- 0.005 m
 //   20 of 20 scans localised
 //
 // MAP is a folder with map_edges.pcd and map_planes.pcd, as pcl_floam_odometry leaves one.

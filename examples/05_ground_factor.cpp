@@ -2,9 +2,9 @@
 //
 //   ./05_ground_factor SCANS
 // prints
-//   by its points, up or down by 7.31151 mm
+//   by its points, up or down by 7.52 mm
 //   ...
-//   on level ground, up or down by 2.79327 mm
+//   on level ground, up or down by 1.77 mm
 #include "each_scan.h"
 
 #include <algorithm>

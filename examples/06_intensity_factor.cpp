@@ -2,7 +2,7 @@
 //
 //   ./06_intensity_factor SCANS
 // prints
-//   000019.pcd: tracked, at      1.25782 -0.000987106   0.00382442
+//   000019.pcd: tracked, at 1.26 0.00 0.00 m
 #include <map>
 #include "each_scan.h"
 

@@ -2,7 +2,7 @@
 //
 //   ./07_own_map SCANS
 // prints
-//   000019.pcd: tracked, at     1.31006 -0.00069719  0.00339127
+//   000019.pcd: tracked, at 1.31 0.00 0.01 m
 #include <bitset>
 #include <Eigen/Eigenvalues>
 #include <map>
@@ -21,7 +21,7 @@ class NdtMap : public pcl_floam::SurfaceMap {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(outer / count - mean * mean.transpose());
       const Eigen::Vector3d variances = eigen.eigenvalues();  // rising
       const std::size_t others = lasers.count() - (lasers.test(laser % 128) ? 1 : 0);
-      if (count > 5 && others > 1 && variances[0] < 0.2 * variances[1]) {
+      if (count > 5 && others > 1 && variances[0] < 0.5 * variances[1]) {
         plane.kind = pcl_floam::SurfaceKind::plane;
         plane.center = mean;
         plane.direction = eigen.eigenvectors().col(0);

@@ -167,8 +167,8 @@ TEST(Se3, IsTheSameFromAllThatPclGives)
 {
   std::mt19937 random(13);
   const SE3 pose = exp(randomTwist(random, 2.0, 1.0));
-  EXPECT_TRUE(sameBits(SE3(pose.matrix()), pose));
-  EXPECT_TRUE(sameBits(SE3(pose.isometry()), pose));
+  EXPECT_EQ(SE3(pose.matrix()).matrix(), pose.matrix());
+  EXPECT_EQ(SE3(pose.isometry()).matrix(), pose.matrix());
   EXPECT_LT((SE3(pose.matrix<float>()).matrix() - pose.matrix()).norm(), 1e-6);
 }
 
