@@ -111,7 +111,7 @@ void CandidateMotions::compare(const std::vector<Sweep>& kept, Hypotheses& hypot
   } else if (late_->poses.size() == kept.size()) {
     hypotheses.dropLeftBehind(*late_, kept);
     hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));
-    hypotheses.giveUp(hopeless(kept.back()), Rivals::motions);
+    hypotheses.giveUpMotions(hopeless(kept.back()));
   }
 }
 

@@ -120,17 +120,21 @@ void Hypotheses::updateMaps(const Sweep& sweep)
                  [&](std::size_t i) { all_[i].track.updateMap(sweep, took_in_ && !all_[i].is_lost); });
 }
 
-void Hypotheses::giveUp(double behind, Rivals rivals)
+void Hypotheses::giveUpDirections(double behind)
+{
+  const double best = std::min_element(all_.begin(), all_.end(), isLikelier)->evidence();  // the first of that order
+  const auto isBehind = [&](const Hypothesis& hypothesis) { return hypothesis.evidence() < best - behind; };
+  all_.erase(std::remove_if(all_.begin(), all_.end(), isBehind), all_.end());
+}
+
+void Hypotheses::giveUpMotions(double behind)
 {
   putFirst(Preference::likeliest);
   std::vector<Hypothesis> left;
   for (Hypothesis& next : all_) {
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == next.direction(); };
-    const auto isTwin = [&](const Hypothesis& other) {
-      return rivals == Rivals::motions && isOfSameDirection(other) && haveMovedAlike(other, next);
-    };
-    const auto best =
-        rivals == Rivals::motions ? std::find_if(left.begin(), left.end(), isOfSameDirection) : left.begin();
+    const auto isTwin = [&](const Hypothesis& other) { return isOfSameDirection(other) && haveMovedAlike(other, next); };
+    const auto best = std::find_if(left.begin(), left.end(), isOfSameDirection);
     const bool is_best = left.empty() || (best == left.end() && !next.is_lost);
     if (is_best || (!next.is_lost && next.evidence() >= best->evidence() - behind &&
                     std::none_of(left.begin(), left.end(), isTwin) &&

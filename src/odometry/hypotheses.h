@@ -43,7 +43,7 @@ struct Hypothesis {
 /// Which is the best one.
 enum class Preference : std::uint8_t { likeliest, least_motion };
 
-/// The likeliest first. Where nothing tells which way time runs in a sweep, each way has its tracks.
+/// The one that is given out first. Where nothing tells which way time runs in a sweep, each way has its tracks.
 class Hypotheses {
 public:
   [[nodiscard]] bool empty() const { return all_.empty(); }
@@ -64,10 +64,13 @@ public:
   /// Whether all maps took in the last sweep.
   [[nodiscard]] bool tookIn() const { return took_in_; }
 
-  /// Those that match no more, or have fallen behind the best one by so much evidence, or have come to move as a
-  /// likelier one does, and all but a few of each direction of time.
-  /// \param rivals with which each is compared: motions within its direction of time
-  void giveUp(double behind, Rivals rivals);
+  /// Those that match no more, or have fallen behind the best one of their direction of time by so much evidence, or
+  /// have come to move as a likelier one does, and all but a few of each direction. The likeliest becomes the first.
+  void giveUpMotions(double behind);
+
+  /// Those that match no more, or have fallen behind the best one by so much evidence. The first one stays that until
+  /// then: what is less is noise, by which poses would go back and forth.
+  void giveUpDirections(double behind);
 
   /// Whether a late one is hopelessly behind at the sweep that it took last, or is no other than one that is about as
   /// likely.

@@ -61,7 +61,7 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 /// After many sweeps rivals are still followed, but motions that have not been tried by then are not.
 void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
 {
-  hypotheses.giveUp(hopeless(sweep), Rivals::motions);
+  hypotheses.giveUpMotions(hopeless(sweep));
   if (kept_.size() == kMostKept) {
     candidates_.reset();
   } else if (candidates_) {

@@ -149,7 +149,7 @@ Tracker::Outcome Tracker::stepAll(const Sweep& sweep)
     return outcome;
   }
   if (!start_) {
-    hypotheses_.giveUp(kWrongDirection, Rivals::directions);
+    hypotheses_.giveUpDirections(kWrongDirection);
   }
   outcome.changed_track = hypotheses_.front().number != before;
   outcome.corrected = may_correct_ && outcome.changed_track;
