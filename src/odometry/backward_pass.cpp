@@ -27,12 +27,12 @@ TrackSettings withoutHorizon(TrackSettings settings)
 
 }  // namespace
 
-BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards,
+BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SweepPose>& forwards,
                            const TrackSettings& settings)
     : back_(withoutHorizon(settings)), count_(forwards.size()), in_map_(count_)
 {
   std::vector<Sweep> sweeps;
-  std::vector<SE3> last;
+  std::vector<SweepPose> last;
   left_ = count_ - kTrusted;
   found_.resize(left_);
   for (std::size_t k = count_; k-- > left_;) {

@@ -17,7 +17,7 @@ public:
 
   /// \param kept sweeps
   /// \param forwards poses that were found of the first of them, more than those that are trusted
-  BackwardPass(const std::vector<Sweep>& kept, const std::vector<SE3>& forwards, const TrackSettings& settings);
+  BackwardPass(const std::vector<Sweep>& kept, const std::vector<SweepPose>& forwards, const TrackSettings& settings);
 
   [[nodiscard]] bool isDone() const { return left_ == 0; }
   /// Registers the next sweep before.

@@ -13,13 +13,6 @@ namespace {
 /// First sweeps that are found once more, and what these are found from.
 constexpr std::size_t kRevised = kFirstSweeps + BackwardPass::kTrusted;
 
-std::vector<SE3> middlesOf(const std::vector<SweepPose>& poses)
-{
-  std::vector<SE3> middles(poses.size());
-  std::transform(poses.begin(), poses.end(), middles.begin(), [](const SweepPose& pose) { return pose.middle; });
-  return middles;
-}
-
 }  // namespace
 
 SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& settings, Hypotheses& hypotheses)
@@ -103,11 +96,11 @@ void Start::beginRevision(Hypotheses& hypotheses)
   leaves_no_trace_ = leavesNoTrace(hypotheses);
   hypotheses.keepOneOfEachDirection(leaves_no_trace_ ? Preference::least_motion : Preference::likeliest);
   for (const Hypothesis& hypothesis : hypotheses.all()) {
-    std::vector<SE3> first = middlesOf(hypothesis.poses);  // those found with a young map, and some that are trusted
+    std::vector<SweepPose> first = hypothesis.poses;  // those found with a young map, and some that are trusted
     first.resize(std::min(first.size(), kRevised));
     revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
   }
-  keyframes_ = keyframesAmong(middlesOf(hypotheses.front().poses), hypotheses.front().track.settings());
+  keyframes_ = keyframesAmong(hypotheses.front().poses, hypotheses.front().track.settings());
 }
 
 void Start::revise(Hypotheses& hypotheses)

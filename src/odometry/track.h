@@ -46,7 +46,7 @@ public:
 
   /// Begins with sweeps whose poses are known, in the order of time.
   /// \param keyframes of which the map is made
-  void begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes);
+  void begin(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses, const std::vector<bool>& keyframes);
 
   /// Another track may have the memory of its map.
   void releaseMap() { map_.reset(); }

@@ -80,21 +80,19 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
   return found;
 }
 
-void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SE3>& poses, const std::vector<bool>& keyframes)
+void Track::begin(const std::vector<Sweep>& sweeps, const std::vector<SweepPose>& poses,
+                  const std::vector<bool>& keyframes)
 {
   constexpr Doubt kKnown = {0.01, 0.01};
   beginMap();
-  Vector6 velocity = Vector6::Zero();
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const std::size_t next = std::max<std::size_t>(i, 1);
-    velocity = log(poses[next - 1].inverse() * poses[next]) / sweeps[next].periods;
-    pose_ = {poses[i], fractionOf(sweeps[i]) * velocity};
+    pose_ = poses[i];
     if (i == 0) {
-      motion_ = MotionEstimate(poses[i], log(poses[0].inverse() * poses[1]) / sweeps[1].periods);
-      motion_.place(poses[i], covarianceOf(kKnown));
+      motion_ = MotionEstimate(pose_.middle, log(pose_.middle.inverse() * poses[1].middle) / sweeps[1].periods);
+      motion_.place(pose_.middle, covarianceOf(kKnown));
     } else {
       motion_.predict(sweeps[i].periods);
-      motion_.correct(poses[i], covarianceOf(kKnown));
+      motion_.correct(pose_.middle, covarianceOf(kKnown));
     }
     if (keyframes[i]) {
       insert(sweeps[i], pose_);

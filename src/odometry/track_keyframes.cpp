@@ -13,13 +13,13 @@ bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSetti
   return moved.translation.norm() > kSides * settings.side || rotationAngle(moved.rotation) > kTurn;
 }
 
-std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings)
+std::vector<bool> keyframesAmong(const std::vector<SweepPose>& poses, const TrackSettings& settings)
 {
   std::vector<bool> keyframes;
   SE3 last;
-  for (const SE3& pose : poses) {
-    keyframes.push_back(keyframes.empty() || becomesKeyframe(last, pose, settings));
-    last = keyframes.back() ? pose : last;
+  for (const SweepPose& pose : poses) {
+    keyframes.push_back(keyframes.empty() || becomesKeyframe(last, pose.middle, settings));
+    last = keyframes.back() ? pose.middle : last;
   }
   return keyframes;
 }

@@ -2,6 +2,7 @@
 /// Which sweeps enter the map that a track registers with.
 #pragma once
 
+#include "motion/sweep_pose.h"
 #include "odometry/track_settings.h"
 
 #include <pcl_floam/common/se3.h>
@@ -13,6 +14,6 @@ namespace pcl_floam {
 [[nodiscard]] bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSettings& settings);
 
 /// Those of some poses, in the order of time, at which a map takes in the sweeps.
-[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SE3>& poses, const TrackSettings& settings);
+[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SweepPose>& poses, const TrackSettings& settings);
 
 }  // namespace pcl_floam

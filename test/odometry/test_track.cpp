@@ -131,15 +131,16 @@ TEST(TrackMap, OneThatHasServedBeforeIsAsANewOne)
 TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
 {
   std::vector<Sweep> sweeps;
-  std::vector<SE3> poses;
+  std::vector<SweepPose> poses;
   TrackSettings settings;
   settings.side = 0.2;
   Tracker tracker(settings);
   for (int k = 0; k < 5; ++k) {
     sweeps.push_back(sweepOf(scanOf(k), tracker));
-    poses.push_back(path(0.5).inverse() * path(k + 0.5));
+    poses.push_back({path(0.5).inverse() * path(k + 0.5), log(path(k).inverse() * path(k + 1))});
   }
   const Sweep last = sweeps.back();
+  const SweepPose last_pose = poses.back();
   sweeps.pop_back();
   poses.pop_back();
   Track track(settings);
@@ -153,7 +154,7 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   for (Sweep& sweep : reversed) {
     sweep.fraction = -sweep.fraction;
   }
-  back.begin(reversed, {path(0.5).inverse() * path(4.5), poses[3]}, {true, true});
+  back.begin(reversed, {last_pose, poses[3]}, {true, true});
   Sweep before = sweeps[2];
   before.fraction = -before.fraction;
   EXPECT_TRUE(back.step(before).report.hasConverged());

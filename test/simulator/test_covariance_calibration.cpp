@@ -35,7 +35,7 @@ protected:
     options.start = 8.0;
     Simulation simulation(options);
     std::vector<pcl_floam::Sweep> sweeps;
-    std::vector<SE3> poses;
+    std::vector<SweepPose> poses;
     for (std::size_t i = 0; i < kMapped + kBetween * kRegistrations; ++i) {
       const Sweep simulated = simulation.sweep(i);
       pcl_floam::Sweep sweep = sampled(simulated);
@@ -45,7 +45,7 @@ protected:
         judge(track.step(sweep).report, simulated.world_T_middle);
       }
       sweeps.push_back(std::move(sweep));
-      poses.push_back(simulated.world_T_middle);
+      poses.push_back({simulated.world_T_middle, log(simulated.world_T_start.inverse() * simulated.world_T_end)});
       if (sweeps.size() > kMapped) {
         sweeps.erase(sweeps.begin());
         poses.erase(poses.begin());
