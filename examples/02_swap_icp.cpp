@@ -3,14 +3,15 @@
 //   ./02_swap_icp            a made-up cloud, moved
 //   ./02_swap_icp a.pcd b.pcd
 // prints
-//   has converged: 1, score: 1.06218e-13
-//   converged after 1 iterations, standard deviations 2.2085e-06 2.13572e-06 5.74949e-07 7.75279e-07 7.74076e-07 3.34616e-06
+//   has converged: 1, score: 1.1e-13
+//   converged after 1 iterations, standard deviations 2.2e-06 2.1e-06 5.7e-07 7.8e-07 7.7e-07 3.3e-06
 #include <pcl_floam/registration/edge_plane_registration.h>
 
 #include <pcl/common/transforms.h>
 #include <pcl/io/pcd_io.h>
 
 #include <cmath>
+#include <iomanip>
 #include <iostream>
 
 using Point = pcl::PointXYZ;
@@ -52,7 +53,8 @@ int main(int argc, char** argv)
   icp.setTransformationEpsilon(1e-8);
   Cloud aligned;
   icp.align(aligned);
-  std::cout << "has converged: " << icp.hasConverged() << ", score: " << icp.getFitnessScore() << '\n'
+  std::cout << std::setprecision(2) << "has converged: " << icp.hasConverged() << ", score: " << icp.getFitnessScore()
+            << '\n'
             << icp.getFinalTransformation() << '\n';
   const pcl_floam::RegistrationReport& report = icp.report();  // what ICP does not tell
   std::cout << toString(report.termination) << " after " << report.iterations << " iterations, standard deviations "

@@ -39,6 +39,13 @@ constexpr float kGrazing = 0.05F;
 /// Points from which the spacing at the end of a surface is taken.
 constexpr int kForSpacing = 3;
 
+/// Points on each side from which the corner of two surfaces is taken.
+constexpr int kForCorner = 4;
+
+/// Cosine of the angle between two surfaces, above which they nearly go on or fold back: where lines through them meet
+/// is then anywhere along them.
+constexpr float kFlatCorner = 0.75F;
+
 Eigen::Vector3f pointAt(const LinePoints& line, int n)
 {
   const auto k = static_cast<std::size_t>(n);
@@ -137,6 +144,52 @@ Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& othe
              : last;
 }
 
+struct StraightLine {
+  Eigen::Vector3f center;
+  Eigen::Vector3f direction;
+};
+
+/// Least squares over the points' places in the scan line.
+StraightLine lineThrough(const LinePoints& line, int first, int last)
+{
+  const float middle = 0.5F * static_cast<float>(first + last);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  Eigen::Vector3f moment = Eigen::Vector3f::Zero();
+  for (int k = first; k <= last; ++k) {
+    sum += pointAt(line, k);
+    moment += (static_cast<float>(k) - middle) * pointAt(line, k);
+  }
+  return {sum / static_cast<float>(last - first + 1), moment.normalized()};
+}
+
+/// Where the surfaces on both sides of point \p n meet; the point itself where that is not clear.
+Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const Side& right)
+{
+  Eigen::Vector3f point = pointAt(line, n);
+  const int first = std::max(left.last, n - kForCorner);
+  const int last = std::min(right.last, n + kForCorner);
+  if (n - first < 2 || last - n < 2) {
+    return point;
+  }
+  const StraightLine a = lineThrough(line, first, n - 1);
+  const StraightLine b = lineThrough(line, n + 1, last);
+  const float cosine = a.direction.dot(b.direction);
+  if (a.direction.isZero() || b.direction.isZero() || std::abs(cosine) > kFlatCorner) {
+    return point;
+  }
+  // In the middle between the points where the two are nearest to each other.
+  const Eigen::Vector3f between = b.center - a.center;
+  const float along_a = between.dot(a.direction);
+  const float along_b = between.dot(b.direction);
+  const float scale = 1.0F / (1.0F - cosine * cosine);
+  const Eigen::Vector3f on_a = a.center + scale * (along_a - cosine * along_b) * a.direction;
+  const Eigen::Vector3f on_b = b.center + scale * (cosine * along_a - along_b) * b.direction;
+  const Eigen::Vector3f corner = 0.5F * (on_a + on_b);
+  const auto k = static_cast<std::size_t>(n);
+  const float farthest = std::max(line.squared_step[k - 1], line.squared_step[k]);
+  return (corner - point).squaredNorm() <= farthest ? corner : point;
+}
+
 }  // namespace
 
 LineEdge locateEdge(const LinePoints& line, int n, float noise)
@@ -151,6 +204,8 @@ LineEdge locateEdge(const LinePoints& line, int n, float noise)
   const bool ends_right = right.last == n && right.border == Border::behind;
   if (ends_left != ends_right) {
     edge.position = ends_left ? endOf(line, left, right) : endOf(line, right, left);
+  } else if (left.last < n && right.last > n) {
+    edge.position = cornerAt(line, n, left, right);
   }
   return edge;
 }

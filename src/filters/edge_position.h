@@ -25,7 +25,7 @@ struct LineEdge {
 /// behind.
 /// - Where the surface ends, the edge is half a step of its points farther.
 /// - Something thin, with something farther or nothing on both sides, is taken by its axis, behind what is seen of it.
-/// - Where two surfaces meet, it is the point: where lines through both sides meet was no better on any drive.
+/// - Where two surfaces meet, the edge is where lines through the points on both sides meet.
 ///
 /// \param noise m: steps of the points up to this are no sign of another surface. The extractor gives the smoothness
 ///              above which it sees edges.

@@ -133,7 +133,9 @@ void Hypotheses::giveUpMotions(double behind)
   std::vector<Hypothesis> left;
   for (Hypothesis& next : all_) {
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == next.direction(); };
-    const auto isTwin = [&](const Hypothesis& other) { return isOfSameDirection(other) && haveMovedAlike(other, next); };
+    const auto isTwin = [&](const Hypothesis& other) {
+      return isOfSameDirection(other) && haveMovedAlike(other, next);
+    };
     const auto best = std::find_if(left.begin(), left.end(), isOfSameDirection);
     const bool is_best = left.empty() || (best == left.end() && !next.is_lost);
     if (is_best || (!next.is_lost && next.evidence() >= best->evidence() - behind &&

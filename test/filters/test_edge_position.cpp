@@ -108,6 +108,28 @@ TEST(EdgePosition, TheEndOfAGrazedSurfaceIsMovedLittleThatOfOneAcrossByHalfAStep
   EXPECT_NEAR(moveOfTheEnd(fan, {25.0, 3.0}, {25.0, 1.0}), 0.5 * 0.006 * 25.0, 1e-3) << "more than those 5 cm";
 }
 
+TEST(EdgePosition, ACornerIsWhereTwoSurfacesMeet)
+{
+  const Eigen::Vector2d corner(5.0, 0.2);
+  for (const double opening : {1.2, 1.57, 2.0}) {
+    for (int i = 0; i < 10; ++i) {
+      Fan fan;
+      fan.phase = 0.1 * i;
+      const Eigen::Vector2d other = corner + 2.0 * Eigen::Vector2d(std::sin(0.7 + opening), std::cos(0.7 + opening));
+      const LinePoints line =
+          seenBy(fan, walls({corner + 2.0 * Eigen::Vector2d(std::sin(0.7), std::cos(0.7)), corner, other}));
+      int nearest = 0;
+      for (int n = 0; n < line.size(); ++n) {
+        if ((pointAt(line, n) - corner).norm() < (pointAt(line, nearest) - corner).norm()) {
+          nearest = n;
+        }
+      }
+      EXPECT_GT((pointAt(line, nearest) - corner).norm(), 1e-4);
+      EXPECT_LT((inPlane(locateEdge(line, nearest, kNoise).position) - corner).norm(), 1e-4);
+    }
+  }
+}
+
 TEST(EdgePosition, AStraightWallIsLeftAsItIs)
 {
   const LinePoints line = seenBy(Fan(), walls({{6.0, -3.0}, {8.0, 3.0}}));
@@ -176,14 +198,14 @@ TEST(EdgePosition, PointsInOnePlaceTellNoDirection)
 
 TEST(EdgePosition, NothingIsMovedFar)
 {
-  // The ends of a wall so far away that its points are a metre apart.
+  // The corner of a house so far away that its points are half a metre apart.
   double farthest = 0.0;
   for (int i = 0; i < 20; ++i) {
     Fan fan;
     fan.phase = 0.05 * i;
     const LinePoints line = seenBy(fan, [](const Eigen::Vector2d& origin, const Eigen::Vector2d& ray) {
-      const double range = toSegment(origin, ray, {300.0, -25.0}, {300.0, 25.0});
-      return std::isfinite(range) ? std::optional<double>(range) : std::nullopt;
+      return std::optional<double>(std::min(toSegment(origin, ray, {100.0, 0.0}, {140.0, 40.0}),
+                                            toSegment(origin, ray, {100.0, 0.0}, {140.0, -40.0})));
     });
     for (int n = 1; n + 1 < line.size(); ++n) {
       farthest = std::max(farthest, (inPlane(locateEdge(line, n, kNoise).position) - pointAt(line, n)).norm());
