@@ -229,6 +229,15 @@ TEST(MotionCompensation, UndistortsASweepWithoutTimesByItsAzimuths)
     lowest = std::min(lowest, static_cast<double>(point.z));
   }
   EXPECT_NEAR(lowest, room.walls.lowest[2], 0.002);
+  for (const unsigned int threads : {2U, 3U, 8U}) {
+    compensation.setNumberOfThreads(threads);
+    pcl::PointCloud<pcl::PointXYZ> same;
+    compensation.filter(same);
+    ASSERT_EQ(same.size(), output.size());
+    for (std::size_t i = 0; i < same.size(); ++i) {
+      ASSERT_EQ(same[i].getVector3fMap(), output[i].getVector3fMap()) << threads << " threads";
+    }
+  }
 }
 
 TEST(MotionCompensation, FollowsTheBaseAsAnyFilter)

@@ -10,6 +10,9 @@
 
 #include <pcl/filters/filter.h>
 
+#include <algorithm>
+#include <thread>
+
 namespace pcl_floam {
 
 /// Re-expresses every point of a sweep at one instant of it, given the motion over the sweep (Eq. 3, 4 and 12).
@@ -68,6 +71,14 @@ public:
   void setScanTimingSource(ScanTimingSource source) { timing_source_ = source; }
   [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
 
+  /// With which scan lines and times are found, where points have none; the result does not depend on it. 0 uses all
+  /// processors. Default: 1.
+  void setNumberOfThreads(unsigned int threads = 0)
+  {
+    threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
+  }
+  [[nodiscard]] int getNumberOfThreads() const { return threads_; }
+
   /// The timing found by the last filter().
   [[nodiscard]] const ScanTiming& getScanTiming() const { return timing_; }
 
@@ -81,6 +92,7 @@ private:
   SensorModel sensor_;
   ScanTimingSource timing_source_ = ScanTimingSource::automatic;
   ScanTiming timing_;
+  int threads_ = 1;
 };
 
 }  // namespace pcl_floam

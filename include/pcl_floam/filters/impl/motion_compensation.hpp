@@ -32,10 +32,10 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
 {
   const CloudView cloud = viewOf(*this->input_);
   ScanLines lines;
-  timing_ = findScanTiming(cloud, lines, timing_source_);
+  timing_ = findScanTiming(cloud, lines, timing_source_, threads_);
   if (!timing_.valid() && timing_source_ != ScanTimingSource::none) {  // without a time field, scan lines must tell
-    findScanLines(cloud, sensor_, ScanLineSource::automatic, lines);
-    timing_ = findScanTiming(cloud, lines, timing_source_);
+    findScanLines(cloud, sensor_, ScanLineSource::automatic, lines, threads_);
+    timing_ = findScanTiming(cloud, lines, timing_source_, threads_);
   }
 
   const pcl::Indices* indices = this->fake_indices_ ? nullptr : this->indices_.get();
