@@ -31,13 +31,6 @@ QUICK = ["room"]
 QUICK_SCANS = 40
 
 
-def doubted(run):
-    """How many scans are not called tracked, and how many there are; nothing if the run ended early."""
-    file = run.folder / "scans.csv"
-    rows = list(csv.DictReader(file.read_text().splitlines())) if file.exists() else []
-    return {"doubted": sum(row["state"] not in ("tracked", "initialized") for row in rows), "scans": len(rows)}
-
-
 def real_runs():
     for name, folder, extra in DRIVES:
         scans = real_data(folder) / "velodyne"

@@ -24,17 +24,13 @@ WORLDS = [("city, HDL-64", "urban", "hdl64", 40, []),
           ("car park, Mid-360", "car-park", "mid360", 60, [])]
 FIGURES = [("t_rel / %", "t_rel", 3, 1.0), ("ATE / cm", "ate", 2, 100.0), ("doubted", "doubted", 0, 1.0),
            ("ms", "ms", 2, 1.0), ("slowest / medians", "slowest", 1, 1.0)]
-QUICK = 3
 
 
 def told(run):
-    """Scans that are not called tracked, and how many times the median the slowest takes; nothing if it ended early."""
-    if not all((run.folder / name).exists() for name in ("scans.csv", "timing.csv")):
-        return {}
-    states = list(csv.DictReader((run.folder / "scans.csv").read_text().splitlines()))
-    times = [float(row["total_ms"]) for row in csv.DictReader((run.folder / "timing.csv").read_text().splitlines())]
-    return {"doubted": sum(row["state"] not in ("tracked", "initialized") for row in states),
-            "slowest": max(times) / statistics.median(times)}
+    """Scans that are not called tracked, and how many times the median the slowest takes."""
+    file = run.folder / "timing.csv"
+    times = [float(row["total_ms"]) for row in csv.DictReader(file.read_text().splitlines())] if file.exists() else []
+    return {**doubted(run), **({"slowest": max(times) / statistics.median(times)} if times else {})}
 
 
 def means(runs):
@@ -65,17 +61,18 @@ def geometric_means(pairs):
 
 options = Options("12_tune", "the drives that choices look at",
                   lambda parser: parser.add_argument("--against", type=pathlib.Path, help="folder of another build's tools"))
-plans = [(world, sensor, seed, count, extra) for _, world, sensor, count, extra in WORLDS[:QUICK if options.quick else None]
-         for seed in SEEDS[:1 if options.quick else None]]
+if options.quick:
+    WORLDS, SEEDS = WORLDS[:3], SEEDS[:1]
+plans = [(world, sensor, seed, count, extra) for _, world, sensor, count, extra in WORLDS for seed in SEEDS]
 data = simulate(options, plans, family="tune")
 builds = [("this", options.arguments.bin)] + ([("other", options.arguments.against)] if options.arguments.against else [])
 runs = {}
 for label, folder in builds:
     options.arguments.bin = folder
     runs[label] = execute(options, [Run(d, label, judge=told) for d in data], timed=True)
-each = len(data) // len(WORLDS[:QUICK if options.quick else None])
+each = len(SEEDS)
 rows = [[name, *cells(*(runs[label][i * each:(i + 1) * each] if label in runs else [] for label in ("this", "other")))]
-        for i, (name, *_) in enumerate(WORLDS[:QUICK if options.quick else None])]
+        for i, (name, *_) in enumerate(WORLDS)]
 if "other" in runs:
     rows.append(["all", *geometric_means(list(zip(runs["this"], runs["other"])))])
 publish(options, [("tune", "Drives that choices look at", ["drive", *(title for title, *_ in FIGURES)], rows)])

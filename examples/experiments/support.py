@@ -206,6 +206,13 @@ def execute(options, runs, timed=False):
         return list(pool.map(lambda run: run.execute(options, timed), runs))
 
 
+def doubted(run):
+    """How many scans are not called tracked, and how many there are; nothing if the run ended early."""
+    file = run.folder / "scans.csv"
+    rows = list(csv.DictReader(file.read_text().splitlines())) if file.exists() else []
+    return {"doubted": sum(row["state"] not in ("tracked", "initialized") for row in rows), "scans": len(rows)}
+
+
 def compensation_modes(options):
     """The names that --compensation takes, from the tool itself."""
     text = subprocess.run([options.tool("pcl_floam_odometry"), "--help"], capture_output=True, text=True).stdout

@@ -1,5 +1,5 @@
 /// \file hash.h
-/// Where keys of hash tables come, whose sizes are powers of two.
+/// Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4) for tables whose sizes are powers of two.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 /// \file pi.h
-/// The one circle number of the library.
+/// The circle constant.
 #pragma once
 
 namespace pcl_floam {

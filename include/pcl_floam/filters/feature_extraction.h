@@ -2,14 +2,12 @@
 /// Edge and plane features as a PCL filter.
 #pragma once
 
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/filters/core/feature_kind.h>
 #include <pcl_floam/filters/core/sensor_model.h>
 
 #include <pcl/filters/filter_indices.h>
-
-#include <algorithm>
-#include <thread>
 
 namespace pcl_floam {
 
@@ -69,10 +67,7 @@ public:
   [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
 
   /// 1 or more; the result does not depend on it. 0 uses all processors. Default: 1.
-  void setNumberOfThreads(unsigned int threads = 0)
-  {
-    threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
-  }
+  void setNumberOfThreads(unsigned int threads = 0) { threads_ = threadCount(threads); }
   [[nodiscard]] int getNumberOfThreads() const { return threads_; }
 
   /// Edges and planes of the input cloud in one pass.

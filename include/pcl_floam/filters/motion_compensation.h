@@ -2,6 +2,7 @@
 /// The undoing of a sweep's distortion as a PCL filter.
 #pragma once
 
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/motion_compensation_mode.h>
 #include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/core/sensor_model.h>
@@ -9,9 +10,6 @@
 #include <pcl_floam/filters/scan_lines.h>
 
 #include <pcl/filters/filter.h>
-
-#include <algorithm>
-#include <thread>
 
 namespace pcl_floam {
 
@@ -73,10 +71,7 @@ public:
 
   /// With which scan lines and times are found, where points have none; the result does not depend on it. 0 uses all
   /// processors. Default: 1.
-  void setNumberOfThreads(unsigned int threads = 0)
-  {
-    threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
-  }
+  void setNumberOfThreads(unsigned int threads = 0) { threads_ = threadCount(threads); }
   [[nodiscard]] int getNumberOfThreads() const { return threads_; }
 
   /// The timing found by the last filter().

@@ -13,8 +13,6 @@ struct SensorModel {
   std::string name = "auto";      ///< "auto" when nothing is known about the sensor
   std::vector<float> elevations;  ///< rad above the horizontal, rising; empty where they are not known
   bool has_scan_lines = true;     ///< whether they are looked for
-
-  [[nodiscard]] bool isKnown() const { return !elevations.empty(); }
 };
 
 /// The model of a sensor by name: auto, solid-state (without scan lines), vlp16, vlp32c, hdl32, hdl64, os32, os64,

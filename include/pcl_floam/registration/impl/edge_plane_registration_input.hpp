@@ -1,11 +1,11 @@
 // EdgePlaneRegistration: settings and input.
 #pragma once
 
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/map/core/finite_search.h>
 
 #include <algorithm>
 #include <stdexcept>
-#include <thread>
 #include <typeinfo>
 
 namespace pcl_floam {
@@ -197,7 +197,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::checkIndices()
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(unsigned int threads)
 {
-  threads_ = static_cast<int>(threads == 0 ? std::max(1U, std::thread::hardware_concurrency()) : threads);
+  threads_ = threadCount(threads);
 }
 
 }  // namespace pcl_floam
