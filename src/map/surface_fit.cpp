@@ -14,6 +14,8 @@ namespace {
 constexpr std::uint32_t kLeastCount = 6;
 /// A plane's thinnest variance is less than this part of the next, which is at least this part of the widest.
 constexpr double kFlat = 0.05;
+/// m^2: what is no thicker than twice the noise may be a plane, or a line, whose cell is too small to show it.
+constexpr double kByNoise = 4.0 * kRangeNoise * kRangeNoise;
 /// Points of one laser lie on its cone, of two on a plane if there is one; any two lasers' points make a line.
 constexpr int kLasersOfPlane = 2;
 constexpr int kLasersOfLine = 3;
@@ -88,6 +90,8 @@ CellFit fitOf(const CellSums& sums, double side)
     shape.extent = static_cast<float>(variance[1]);
     const std::array<float, 3> wide = single(eigen.eigenvectors().col(2));
     fit.along = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
+  } else if (variance[0] < kByNoise) {
+    fit.kind = SurfaceKind::unknown;
   } else {
     fit.kind = SurfaceKind::point;
     Eigen::Map<Eigen::Matrix3f>(fit.along.data()) = feltAmong(eigen.eigenvectors(), variance, side).cast<float>();

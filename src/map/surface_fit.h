@@ -11,6 +11,9 @@
 
 namespace pcl_floam {
 
+/// Standard deviation of a return's place, m.
+inline constexpr double kRangeNoise = 0.02;
+
 /// Count, sum and sum of outer products of points about a common origin, and the lasers that saw them.
 struct CellSums {
   std::array<double, 3> sum{};
@@ -37,7 +40,7 @@ struct CellFit {
   std::array<float, 9> along{};
 };
 
-/// A shape that chance or the sampling pattern of a single laser would give is none.
+/// A shape that chance, noise or the sampling pattern of a single laser would give is none.
 /// \param side m, of the cell
 [[nodiscard]] CellFit fitOf(const CellSums& sums, double side);
 

@@ -1,7 +1,7 @@
 #include "registration/surface_residuals.h"
 
 #include "common/pi.h"
-#include "map/laser_support.h"
+#include "map/surface_fit.h"
 #include "registration/residual_rows.h"
 
 #include <algorithm>
@@ -13,8 +13,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// Standard deviation of a return's place, m.
-constexpr double kRangeNoise = 0.02;
 /// How far a laser's direction is from the one it is said to have, one standard deviation in rad: half of the 0.07
 /// degrees that calibrations of spinning lidars find (Glennie and Lichti 2010; Glennie, Kusari and Facchin 2016). With
 /// all of it, far ground would count so little that cars that keep pace outweigh it.
