@@ -133,15 +133,15 @@ TEST(VoxelPyramid, LooksAtAWiderScaleWhereNoiseHidesTheShape)
 {
   VoxelPyramid map(0.1);
   std::mt19937 random(4);
-  std::normal_distribution<double> noise(0.0, 0.02);
+  std::normal_distribution<double> noise(0.0, 0.02);  // m: a fifth of a cell
   for (std::uint32_t i = 0; i < 20000; ++i) {
     map.insert({test::uniform(random, 2.0), test::uniform(random, 2.0), 0.05 + noise(random)}, i % 8);
   }
   for (double x = -1.0; x < 1.0; x += 0.13) {
-    const Surface wall = map.surfaceAt({x, 0.3, 0.05}, kStranger);
-    ASSERT_EQ(wall.kind, SurfaceKind::plane) << x;
-    EXPECT_GT(wall.size, 0.1);
-    EXPECT_GT(std::abs(wall.direction.z()), 0.99);
+    const Surface floor = map.surfaceAt({x, 0.3, 0.05}, kStranger);
+    ASSERT_EQ(floor.kind, SurfaceKind::plane) << x;
+    EXPECT_GT(floor.size, 0.1);
+    EXPECT_GT(std::abs(floor.direction.z()), 0.99);
   }
 }
 

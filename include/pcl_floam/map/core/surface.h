@@ -11,7 +11,7 @@ namespace pcl_floam {
 
 /// The shape of what was seen near a place.
 enum class SurfaceKind : std::uint8_t {
-  unknown,  ///< nothing, or nothing that several lasers support
+  unknown,  ///< nothing, or nothing that several lasers support and noise does not hide
   plane,
   line,
   point  ///< neither: the nearest point seen there
