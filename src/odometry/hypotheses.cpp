@@ -207,6 +207,19 @@ void Hypotheses::keepOneOfEachDirection(Preference preference)
   all_ = std::move(kept);
 }
 
+Matrix6 Hypotheses::spread() const
+{
+  Matrix6 squares = Matrix6::Zero();
+  const SE3& first = front().track.pose().middle;
+  for (std::size_t i = 1; i < all_.size(); ++i) {
+    const SE3& other = all_[i].track.pose().middle;
+    Vector6 off;
+    off << other.translation - first.translation, logSO3(other.rotation * first.rotation.transpose());
+    squares += off * off.transpose();
+  }
+  return squares / std::max(1.0, static_cast<double>(all_.size()) - 1.0);
+}
+
 bool Hypotheses::hasRivalsInDirection() const
 {
   return std::count_if(all_.begin(), all_.end(),

@@ -91,6 +91,9 @@ public:
   /// Whether more than one was ever followed.
   [[nodiscard]] bool wereSeveral() const { return numbered_ > 1; }
 
+  /// Covariance of the first one's pose, any other's being as likely to be right; zero without others.
+  [[nodiscard]] Matrix6 spread() const;
+
   /// Whether the best one's direction of time has others.
   [[nodiscard]] bool hasRivalsInDirection() const;
 

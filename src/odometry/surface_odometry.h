@@ -225,19 +225,24 @@ struct SurfaceOdometry : OdometryRun {
       report.world_T_sensor = world_T_track * poseNow().at(poseFraction());
       turnIntoWorld(report, world_T_track);
     }
-    if (state == TrackingState::predicted && tracker.isTracking()) {
-      report.covariance = turned(predicted().poseCovariance(), world_T_track);
-    } else if (state == TrackingState::tracked || state == TrackingState::doubtful) {
-      report.covariance = report.registration.covariance;
-      const Eigen::Matrix3d& turn = world_T_track.rotation;
-      report.covariance.topLeftCorner<3, 3>() += turn * told_motion.open() * turn.transpose();
-    }
+    noteCovariance();
     noteRest();
     first_scans.give(report.world_T_sensor);
     if (tracker.isTracking() && !tracker.mayCorrect()) {
       first_scans.close();
     }
     report.milliseconds.total = watch.total();
+  }
+
+  void noteCovariance()
+  {
+    if (report.state == TrackingState::predicted && tracker.isTracking()) {
+      report.covariance = turned(predicted().poseCovariance() + tracker.spread(), world_T_track);
+    } else if (report.state == TrackingState::tracked || report.state == TrackingState::doubtful) {
+      Matrix6 besides = tracker.spread();
+      besides.topLeftCorner<3, 3>() += told_motion.open();
+      report.covariance = report.registration.covariance + turned(besides, world_T_track);
+    }
   }
 
   [[nodiscard]] SweepPose poseNow() const

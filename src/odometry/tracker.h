@@ -56,6 +56,8 @@ public:
     return may_correct_ && (hypotheses_.size() > 1 || (start_ && (start_->isSearching() || hypotheses_.wereSeveral())));
   }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
+  /// What its pose may be off, as another of the tracks may be the right one.
+  [[nodiscard]] Matrix6 spread() const { return hypotheses_.spread(); }
   /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
   /// several tracks.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 
 namespace pcl_floam::simulator {
@@ -45,6 +46,23 @@ TEST(UndecidedStarts, AreNotSettledByTheClock)
     EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.motionError() < 0.3) << number;
   }
   EXPECT_GT(undecided, 100) << "more sweeps than are kept";
+}
+
+/// While a wrong one is followed, the right one is within reach of the covariance once it is followed beside it.
+TEST(UndecidedStarts, HaveACovarianceThatReachesToRivals)
+{
+  constexpr double kWrong = 10.0;  // m
+  constexpr double kSigmas = 3.0;
+  FirstScans scans(slowlyTold(12, 14.0));
+  int wrong = 0;
+  for (int number = 0; number < 45; ++number) {
+    const OdometryReport& report = scans.next();
+    if (number >= 30) {
+      wrong += scans.wayError() > kWrong ? 1 : 0;
+      EXPECT_LT(scans.wayError(), kSigmas * std::sqrt(report.covariance.topLeftCorner<3, 3>().trace())) << number;
+    }
+  }
+  EXPECT_GT(wrong, 10) << "the right one is followed";
 }
 
 /// Once one is left the poses before are corrected.

@@ -50,9 +50,9 @@ struct OdometryReport {
   double since_stamp = 0.0;
   /// It is not decided yet how the sensor began to move: other motions than this one are still sought, a few each scan
   /// (`start_effort`), or are or were followed beside it, since the first scans do not tell (fast, among traffic;
-  /// without times). The poses since the first scan may yet be corrected, by more than `covariance` tells. By default
-  /// it ends after some ten scans where one motion is likely, else when one is left, and its scans were gone through
-  /// once more.
+  /// without times). The poses since the first scan may yet be corrected, to those of a motion that is only sought by
+  /// more than `covariance` tells. By default it ends after some ten scans where one motion is likely, else when one is
+  /// left, and its scans were gone through once more.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
@@ -76,8 +76,8 @@ struct OdometryReport {
   /// registration may be off against the map; along directions that the scans said nothing of (weak ones, by surfaces;
   /// all of them while poses are predicted) what the velocity may have been off since they were seen last. While a
   /// position is doubtful since nothing but the expectation holds it, any motion since the scan before counts, up to
-  /// 4 m a period; what was wrong before that is not in it. By features
-  /// weak ones have a variance too large to be used. Zero for the first scan.
+  /// 4 m a period; what was wrong before that is not in it. Where several motions are followed, by surfaces, it reaches
+  /// from this one to the others. By features weak ones have a variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;           ///< what the scan was registered by
   ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why the scan was worked from space, not scan lines
