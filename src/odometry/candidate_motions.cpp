@@ -96,6 +96,7 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
     late_.emplace(std::move(track), found);
     late_->poses = {{SE3(), twist}, late_->track.pose()};
     late_->evidences.assign(2, late_->track.evidence());
+    late_->point_evidences.resize(2);
   }
   return found;
 }
@@ -106,12 +107,12 @@ void CandidateMotions::compare(const std::vector<Sweep>& kept, Hypotheses& hypot
   if (!late_) {
     return;
   }
-  if (late_->is_lost || hypotheses.haveLeftBehind(*late_, kept)) {
+  if (late_->is_lost || hypotheses.haveLeftBehind(*late_)) {
     late_.reset();
   } else if (late_->poses.size() == kept.size()) {
-    hypotheses.dropLeftBehind(*late_, kept);
+    hypotheses.dropLeftBehind(*late_);
     hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));
-    hypotheses.giveUpMotions(hopeless(kept.back()));
+    hypotheses.giveUpMotions();
   }
 }
 

@@ -19,7 +19,7 @@ void FirstScans::add(const FeatureSet& features)
 {
   at_.push_back({++sweep_, 0.0});
   features_.push_back(features);
-  if (features_.size() > Start::kMostKept) {
+  if (features_.size() > kMostKept) {
     features_.erase(features_.begin());
   }
 }

@@ -45,10 +45,36 @@ bool haveMovedAlike(const Hypothesis& a, const Hypothesis& b)
   return off.dot(expected.ldlt().solve(off)) < kMean;
 }
 
-/// Whether one was too far behind another when they took a sweep.
-bool isHopeless(const Hypothesis& one, const Hypothesis& other, std::size_t then, const std::vector<Sweep>& kept)
+/// Sweeps by whose points two are compared.
+constexpr std::size_t kComparedSweeps = 10;
+
+/// Whether one explained fewer points better than another did, by more than chance, in the sweeps up to one that both
+/// took. Points are counted, whatever each of them tells: what goes along with the sensor, as cars that keep pace,
+/// outweighs all else by far, but where the ground is, it does not tell as well as the right motion.
+bool wasWorse(const Hypothesis& one, const Hypothesis& other, std::size_t then)
 {
-  return one.evidences[then] < other.evidences[then] - hopeless(kept[then]);
+  constexpr double kSurely = 4.0;  // standard deviations: several are compared, sweep after sweep, by young maps
+  double lead = 0.0;
+  double differing = 0.0;
+  for (std::size_t k = then + 1 - std::min(then + 1, kComparedSweeps); k <= then; ++k) {
+    const std::vector<float>& own = one.point_evidences[k];
+    const std::vector<float>& others = other.point_evidences[k];
+    for (std::size_t i = 0; i < std::min(own.size(), others.size()); ++i) {
+      lead += static_cast<double>(others[i] > own[i]) - static_cast<double>(others[i] < own[i]);
+      differing += static_cast<double>(others[i] != own[i]);
+    }
+  }
+  return lead > kSurely * std::sqrt(kResidualsPerIndependentOne * differing);
+}
+
+/// Whether it is worse now than any of others of its direction of time.
+bool isWorse(const Hypothesis& one, const std::vector<Hypothesis>& others)
+{
+  return std::any_of(others.begin(), others.end(), [&](const Hypothesis& other) {
+    const std::size_t taken = other.point_evidences.size();
+    return other.direction() == one.direction() && taken > 0 && taken == one.point_evidences.size() &&
+           wasWorse(one, other, taken - 1);
+  });
 }
 
 bool isLikelier(const Hypothesis& a, const Hypothesis& b)
@@ -63,12 +89,6 @@ bool hasMovedLess(const Hypothesis& a, const Hypothesis& b)
 
 }  // namespace
 
-double hopeless(const Sweep& sweep)
-{
-  constexpr double kOfAPoint = 0.1;
-  return kOfAPoint * static_cast<double>(sweep.sample.size());
-}
-
 void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
 {
   last = track.step(sweep, rivals);
@@ -76,10 +96,21 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
   if (keeps_poses && !is_lost) {
     poses.push_back(track.pose());
     evidences.push_back(track.evidence());
+    keepPointEvidence();
   }
   if (rivals == Rivals::motions) {
     without_trace += last.report.weak_directions.empty() || poses.size() > kFirstSweeps ? 0 : 1;
     track.updateMap(sweep);
+  }
+}
+
+/// Those that come late are compared from the first sweep on, while sweeps are kept.
+void Hypothesis::keepPointEvidence()
+{
+  point_evidences.push_back(std::move(last.point_evidence));
+  const std::size_t taken = point_evidences.size();
+  if (taken > kMostKept + kComparedSweeps) {
+    point_evidences[taken - 1 - kComparedSweeps] = {};
   }
 }
 
@@ -127,9 +158,14 @@ void Hypotheses::giveUpDirections(double behind)
   all_.erase(std::remove_if(all_.begin(), all_.end(), isBehind), all_.end());
 }
 
-void Hypotheses::giveUpMotions(double behind)
+void Hypotheses::giveUpMotions()
 {
   putFirst(Preference::likeliest);
+  for (std::size_t i = all_.size(); i-- > 0;) {
+    if (isWorse(all_[i], all_)) {
+      all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+  }
   std::vector<Hypothesis> left;
   for (Hypothesis& next : all_) {
     const auto isOfSameDirection = [&](const Hypothesis& other) { return other.direction() == next.direction(); };
@@ -138,8 +174,7 @@ void Hypotheses::giveUpMotions(double behind)
     };
     const auto best = std::find_if(left.begin(), left.end(), isOfSameDirection);
     const bool is_best = left.empty() || (best == left.end() && !next.is_lost);
-    if (is_best || (!next.is_lost && next.evidence() >= best->evidence() - behind &&
-                    std::none_of(left.begin(), left.end(), isTwin) &&
+    if (is_best || (!next.is_lost && std::none_of(left.begin(), left.end(), isTwin) &&
                     std::count_if(left.begin(), left.end(), isOfSameDirection) < kMostOfADirection)) {
       left.push_back(std::move(next));
     }
@@ -147,7 +182,7 @@ void Hypotheses::giveUpMotions(double behind)
   all_ = std::move(left);
 }
 
-bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const
+bool Hypotheses::haveLeftBehind(const Hypothesis& late) const
 {
   constexpr double kBetter = 1.0;  // evidence: less does not tell two registrations of one motion apart
   const std::size_t now = late.evidences.size() - 1;
@@ -157,7 +192,7 @@ bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>
       continue;
     }
     const bool is_as_good = late.evidences[now] < other.evidences[now] + kBetter;
-    if (isHopeless(late, other, now, kept) || (is_as_good && now == 1 && haveBegunAlike(late, other))) {
+    if (wasWorse(late, other, now) || (is_as_good && now == 1 && haveBegunAlike(late, other))) {
       return true;
     }
     better += other.evidences[now] > late.evidences[now] ? 1 : 0;
@@ -165,12 +200,12 @@ bool Hypotheses::haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>
   return better >= kMostOfADirection;
 }
 
-void Hypotheses::dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept)
+void Hypotheses::dropLeftBehind(const Hypothesis& late)
 {
   const auto isLeftBehind = [&](const Hypothesis& other) {
     bool is_behind = haveBegunAlike(late, other);
-    for (std::size_t k = 1; k < kept.size() && !is_behind; ++k) {
-      is_behind = isHopeless(other, late, k, kept);
+    for (std::size_t k = 1; k < late.poses.size() && !is_behind; ++k) {
+      is_behind = wasWorse(other, late, k);
     }
     return is_behind && other.direction() == late.direction();
   };

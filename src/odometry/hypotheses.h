@@ -14,6 +14,9 @@ namespace pcl_floam {
 /// Sweeps until it is decided how the sensor began to move, if one motion is left by then.
 constexpr std::size_t kFirstSweeps = 12;
 
+/// First sweeps that are kept.
+constexpr std::size_t kMostKept = 96;
+
 /// A track among others.
 struct Hypothesis {
   Hypothesis(Track begun, const SurfaceRegistration& found) : track(std::move(begun)), last(found) {}
@@ -25,6 +28,9 @@ struct Hypothesis {
   Track track;
   std::vector<SweepPose> poses;   ///< of the sweeps since the first one, as far as they may be corrected
   std::vector<double> evidences;  ///< as each was taken
+  /// Of each sweep's points, \ref SurfaceRegistration::point_evidence; of later ones than are kept, while rivals need
+  /// it.
+  std::vector<std::vector<float>> point_evidences;
   SurfaceRegistration last;
   bool is_lost = false;
   std::size_t number = 0;
@@ -33,12 +39,10 @@ struct Hypothesis {
   [[nodiscard]] double direction() const { return track.settings().direction; }
   [[nodiscard]] double evidence() const;
   [[nodiscard]] double moved() const;  ///< m, from the first sweep on
-};
 
-/// A track whose evidence is so much less than the best one's is given up, for each point of a sweep, since the errors
-/// that lead astray are shared by points: false ones lead by less while the map is young, and fall behind by more where
-/// a scene is clear.
-[[nodiscard]] double hopeless(const Sweep& sweep);
+private:
+  void keepPointEvidence();
+};
 
 /// Which is the best one.
 enum class Preference : std::uint8_t { likeliest, least_motion };
@@ -64,20 +68,20 @@ public:
   /// Whether all maps took in the last sweep.
   [[nodiscard]] bool tookIn() const { return took_in_; }
 
-  /// Those that match no more, or have fallen behind the best one of their direction of time by so much evidence, or
+  /// Those that match no more, or surely explain the last sweeps worse than another one of their direction of time, or
   /// have come to move as a likelier one does, and all but a few of each direction. The likeliest becomes the first.
-  void giveUpMotions(double behind);
+  void giveUpMotions();
 
   /// Those that match no more, or have fallen behind the best one by so much evidence. The first one stays that until
   /// then: what is less is noise, by which poses would go back and forth.
   void giveUpDirections(double behind);
 
-  /// Whether a late one is hopelessly behind at the sweep that it took last, or is no other than one that is about as
-  /// likely.
-  [[nodiscard]] bool haveLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept) const;
+  /// Whether a late one surely explains sweeps worse up to the one that it took last, or is no other than one that is
+  /// about as likely.
+  [[nodiscard]] bool haveLeftBehind(const Hypothesis& late) const;
 
-  /// Those that once were so behind one that has caught up.
-  void dropLeftBehind(const Hypothesis& late, const std::vector<Sweep>& kept);
+  /// Those that once did so beside one that has caught up.
+  void dropLeftBehind(const Hypothesis& late);
 
   /// Those that match no more, unless all do.
   void dropLost();

@@ -46,15 +46,15 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   if (isDecided()) {
     revise(hypotheses);
   } else {
-    follow(sweep, hypotheses);
+    follow(hypotheses);
   }
   return true;
 }
 
 /// After many sweeps rivals are still followed, but motions that have not been tried by then are not.
-void Start::follow(const Sweep& sweep, Hypotheses& hypotheses)
+void Start::follow(Hypotheses& hypotheses)
 {
-  hypotheses.giveUpMotions(hopeless(sweep));
+  hypotheses.giveUpMotions();
   if (kept_.size() == kMostKept) {
     candidates_.reset();
   } else if (candidates_) {

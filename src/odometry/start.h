@@ -17,9 +17,6 @@ namespace pcl_floam {
 /// What is more than a sweep's share of that (\ref TrackSettings::start_effort) is left to the sweeps that follow.
 class Start {
 public:
-  /// First sweeps that are kept.
-  static constexpr std::size_t kMostKept = 96;
-
   explicit Start(const Sweep& first) : kept_{first} {}
 
   /// Looks for a motion from the first sweep to the second, and keeps that if there is one.
@@ -47,7 +44,7 @@ private:
 
   [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
-  void follow(const Sweep& sweep, Hypotheses& hypotheses);
+  void follow(Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);
   void revise(Hypotheses& hypotheses);
   [[nodiscard]] bool isDone(const BackwardPass& pass) const;

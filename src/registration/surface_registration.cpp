@@ -47,6 +47,7 @@ public:
     if (problem_.wants_evidence && result.report.hasConverged()) {
       weighs_evidence_ = true;
       result.evidence = accumulate(0.0, 1).total().evidence;
+      result.point_evidence = room_.evidence;
     }
     return result;
   }

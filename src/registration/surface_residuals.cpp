@@ -99,10 +99,12 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& e
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = chunksOf(scan, stride);
   parts.resize(of_scan + chunksOf(edges, 1));
+  room.evidence.assign(weighs_evidence ? scan.points->size() : 0, 0.0F);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
     const auto c = static_cast<std::size_t>(part);
-    parts[c] = c < of_scan ? chunkOf(scan, c, stride, nullptr) : chunkOf(edges, c - of_scan, 1, room.edges.data());
+    parts[c] = c < of_scan ? chunkOf(scan, c, stride, nullptr, weighs_evidence ? room.evidence.data() : nullptr)
+                           : chunkOf(edges, c - of_scan, 1, room.edges.data(), nullptr);
   }
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
@@ -123,8 +125,9 @@ PlacedPoint SurfaceResiduals::placedAt(const Eigen::Vector3d& undistorted, const
 }
 
 /// \param found before, of all points of the term; nullptr: it is not kept
+/// \param[out] evidence of all points; nullptr: it is not asked for
 SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
-                                      FoundSurface* found) const
+                                      FoundSurface* found, float* evidence) const
 {
   const std::size_t begin = chunk * kPointsPerChunk;
   const std::size_t end = std::min((term.points->size() + stride - 1) / stride, begin + kPointsPerChunk);
@@ -151,11 +154,15 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
     findAgain(*term.target, places.data(), lasers.data(), end - begin, found + begin, surfaces.data());
   }
   for (std::size_t i = 0; i < end - begin; ++i) {
+    const double before = sums.evidence;
     switch (surfaces[i].kind) {
       case SurfaceKind::plane: addPlane(placed[i], surfaces[i], rows, noise, sums); break;
       case SurfaceKind::line: addLine(placed[i], surfaces[i], rows, noise, sums); break;
       case SurfaceKind::point: addPoint(placed[i], surfaces[i], nearest, sums); break;
       case SurfaceKind::unknown: break;
+    }
+    if (evidence != nullptr) {
+      evidence[(begin + i) * stride] = static_cast<float>(sums.evidence - before);
     }
   }
   nearest.addTo(sums.equations);

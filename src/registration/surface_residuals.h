@@ -55,6 +55,7 @@ struct FoundSurface {
 struct SurfaceRoom {
   std::vector<SurfaceSums> parts;   ///< of the chunks
   std::vector<FoundSurface> edges;  ///< by the edge
+  std::vector<float> evidence;      ///< by the point of the scan, if it was weighed
 };
 
 /// The residuals at one estimate of pose and motion.
@@ -71,8 +72,8 @@ struct SurfaceResiduals {
                                  SurfaceRoom& room) const;
 
 private:
-  [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
-                                    FoundSurface* found) const;
+  [[nodiscard]] SurfaceSums chunkOf(const SurfaceTerm& term, std::size_t chunk, std::size_t stride, FoundSurface* found,
+                                    float* evidence) const;
   [[nodiscard]] PlacedPoint placedAt(const Eigen::Vector3d& undistorted, const ScanPoint& point) const;
   void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
                 SurfaceSums& sums) const;
