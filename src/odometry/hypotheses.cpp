@@ -48,9 +48,9 @@ bool haveMovedAlike(const Hypothesis& a, const Hypothesis& b)
 /// Sweeps by whose points two are compared.
 constexpr std::size_t kComparedSweeps = 10;
 
-/// Whether one explained fewer points better than another did, by more than chance, in the sweeps up to one that both
-/// took. Points are counted, whatever each of them tells: what goes along with the sensor, as cars that keep pace,
-/// outweighs all else by far, but where the ground is, it does not tell as well as the right motion.
+/// Whether one was less likely than another at a sweep that both took, and explained fewer points better than that did,
+/// by more than chance, in the sweeps up to it. Points are counted, whatever each of them tells: what goes along with
+/// the sensor, as cars that keep pace do, tells more than the road does, but of the ground it tells less well.
 bool wasWorse(const Hypothesis& one, const Hypothesis& other, std::size_t then)
 {
   constexpr double kSurely = 4.0;  // standard deviations: several are compared, sweep after sweep, by young maps
@@ -64,7 +64,8 @@ bool wasWorse(const Hypothesis& one, const Hypothesis& other, std::size_t then)
       differing += static_cast<double>(others[i] != own[i]);
     }
   }
-  return lead > kSurely * std::sqrt(kResidualsPerIndependentOne * differing);
+  return one.evidences[then] < other.evidences[then] &&
+         lead > kSurely * std::sqrt(kResidualsPerIndependentOne * differing);
 }
 
 /// Whether it is worse now than any of others of its direction of time.

@@ -72,7 +72,7 @@ TEST(UndecidedStarts, AreNotDecidedByAConvoy)
 {
   FirstScans scans(slowlyTold(12, 14.0));
   OdometryReport report;
-  for (int number = 0; number < 60; ++number) {
+  for (int number = 0; number < 75; ++number) {
     report = scans.next();
     EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.wayError() < 1.0) << number;
   }
