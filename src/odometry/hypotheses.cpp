@@ -50,7 +50,7 @@ constexpr std::size_t kComparedSweeps = 10;
 
 /// Whether one was less likely than another at a sweep that both took, and explained fewer points better than that did,
 /// by more than chance, in the sweeps up to it. Points are counted, whatever each of them tells: what goes along with
-/// the sensor, as cars that keep pace do, tells more than the road does, but of the ground it tells less well.
+/// the sensor, as cars that keep pace do, may tell more than the road does, but at fewer points.
 bool wasWorse(const Hypothesis& one, const Hypothesis& other, std::size_t then)
 {
   constexpr double kSurely = 4.0;  // standard deviations: several are compared, sweep after sweep, by young maps
@@ -97,7 +97,9 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
   if (keeps_poses && !is_lost) {
     poses.push_back(track.pose());
     evidences.push_back(track.evidence());
-    keepPointEvidence();
+    if (rivals == Rivals::motions) {
+      keepPointEvidence();
+    }
   }
   if (rivals == Rivals::motions) {
     without_trace += last.report.weak_directions.empty() || poses.size() > kFirstSweeps ? 0 : 1;
@@ -105,13 +107,12 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
   }
 }
 
-/// Those that come late are compared from the first sweep on, while sweeps are kept.
+/// Motions that are tried late are compared from the first sweep on; after the sweeps that are kept there are none.
 void Hypothesis::keepPointEvidence()
 {
   point_evidences.push_back(std::move(last.point_evidence));
-  const std::size_t taken = point_evidences.size();
-  if (taken > kMostKept + kComparedSweeps) {
-    point_evidences[taken - 1 - kComparedSweeps] = {};
+  for (std::size_t k = 0; point_evidences.size() > kMostKept && k + kComparedSweeps < point_evidences.size(); ++k) {
+    std::vector<float>().swap(point_evidences[k]);
   }
 }
 
@@ -239,6 +240,7 @@ void Hypotheses::keepOneOfEachDirection(Preference preference)
   std::stable_sort(kept.begin(), kept.end(), isLikelier);
   for (Hypothesis& hypothesis : kept) {
     hypothesis.track.beginEvidence();
+    hypothesis.point_evidences = std::vector<std::vector<float>>();
   }
   all_ = std::move(kept);
 }

@@ -28,8 +28,7 @@ struct Hypothesis {
   Track track;
   std::vector<SweepPose> poses;   ///< of the sweeps since the first one, as far as they may be corrected
   std::vector<double> evidences;  ///< as each was taken
-  /// Of each sweep's points, \ref SurfaceRegistration::point_evidence; of later ones than are kept, while rivals need
-  /// it.
+  /// \ref SurfaceRegistration::point_evidence of each sweep, while rivals are motions; empty where it is not needed.
   std::vector<std::vector<float>> point_evidences;
   SurfaceRegistration last;
   bool is_lost = false;
@@ -95,7 +94,7 @@ public:
   /// Whether more than one was ever followed.
   [[nodiscard]] bool wereSeveral() const { return numbered_ > 1; }
 
-  /// Covariance of the first one's pose, any other's being as likely to be right; zero without others.
+  /// Mean square of what the first one's pose is off if another one is right, each as likely; zero without others.
   [[nodiscard]] Matrix6 spread() const;
 
   /// Whether the best one's direction of time has others.

@@ -66,8 +66,8 @@ TEST(UndecidedStarts, HaveACovarianceThatReachesToRivals)
   EXPECT_GT(wrong, 10) << "the right one is followed";
 }
 
-/// Cars that keep pace explain more of these scans than the road does, whose motion would be given up if what points
-/// tell were summed up.
+/// By the sum of what points tell, cars that keep pace explain these scans so much better than the road does that its
+/// motion, which is the right one, would be given up.
 TEST(UndecidedStarts, AreNotDecidedByAConvoy)
 {
   FirstScans scans(slowlyTold(12, 14.0));
