@@ -76,7 +76,8 @@ void MotionEstimate::forgetAlong(const Eigen::Vector3d& direction, double period
 void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hint, double periods_error)
 {
   constexpr double kMostSteps = 16.0;
-  const double steps = std::clamp(std::ceil(periods), 1.0, kMostSteps);  // noise turns with the sensor on the way
+  const double steps =
+      std::clamp(std::ceil(std::abs(periods)), 1.0, kMostSteps);  // noise turns with the sensor on the way
   const SE3 before = pose_;
   Growth growth;
   for (int i = 0; i < static_cast<int>(steps); ++i) {
@@ -94,6 +95,7 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
 
 void MotionEstimate::advance(double periods, Growth& growth)
 {
+  const double length = std::abs(periods);
   const SE3 step = exp(periods * velocity_);
   pose_ = pose_ * step;
   pose_.rotation = nearestRotation(pose_.rotation);
@@ -102,9 +104,9 @@ void MotionEstimate::advance(double periods, Growth& growth)
   Matrix12 q = Matrix12::Zero();
   for (int i = 0; i < 6; ++i) {
     const double density = late_errors_[i] / kPerDensity;
-    q(i, i) = density * periods * periods * periods / 3.0;
-    q(i, 6 + i) = q(6 + i, i) = density * periods * periods / 2.0;
-    q(6 + i, 6 + i) = density * periods;
+    q(i, i) = density * length * length * length / 3.0;
+    q(i, 6 + i) = q(6 + i, i) = density * periods * length / 2.0;
+    q(6 + i, 6 + i) = density * length;
   }
   growth = {product(f, growth.transition), propagated(f, growth.noise) + q};
 }

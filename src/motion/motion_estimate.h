@@ -38,7 +38,7 @@ public:
   /// periods.
   void forgetAlong(const Eigen::Vector3d& direction, double periods);
 
-  /// Goes on by so many periods.
+  /// Goes on by so many periods, or back, if they are negative.
   /// \param hint          of the motion meanwhile
   /// \param periods_error one standard deviation
   void predict(double periods, const std::optional<MotionHint>& hint = std::nullopt, double periods_error = 0.0);

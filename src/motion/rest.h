@@ -4,18 +4,16 @@
 
 #include <pcl_floam/common/se3.h>
 
-#include <array>
-#include <cstddef>
-
 namespace pcl_floam {
 
 /// At rest, poses differ by the noise of their registration alone: a step from one to the next is undone by later ones,
-/// and none lies far from the mean. Both are asked in units of the steps themselves, so that no speed and no noise is
-/// supposed. A motion slower than the noise of ten poses looks like rest until it has led out of the noise.
+/// and none lies far from the mean, by those steps as by the covariance: what sways or shakes undoes its steps, too. A
+/// motion slower than the noise of ten poses looks like rest until it has led out of the noise.
 class Rest {
 public:
   /// The pose of the next scan, as it was found.
-  void take(const SE3& pose);
+  /// \param covariance of its errors, both as \ref RegistrationReport has them
+  void take(const SE3& pose, const Matrix6& covariance);
 
   [[nodiscard]] bool isAtRest() const { return is_at_rest_; }
   /// Poses taken since the sensor may have come to rest.
@@ -35,10 +33,8 @@ private:
 
   private:
     Eigen::Vector3d last_ = Eigen::Vector3d::Zero();
-    std::array<double, kMostPoses> first_{};  // squares of the first steps
-    std::size_t count_ = 0;                   // of the steps
-    double squares_ = 0.0;                    // of the steps
-    double products_ = 0.0;                   // of each step with the one before
+    double squares_ = 0.0;   // of the steps
+    double products_ = 0.0;  // of each step with the one before
   };
 
   int poses_ = 0;

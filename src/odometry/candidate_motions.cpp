@@ -96,7 +96,7 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
     late_.emplace(std::move(track), found);
     late_->poses = {{SE3(), twist}, late_->track.pose()};
     late_->evidences.assign(2, late_->track.evidence());
-    late_->point_evidences.resize(2);
+    late_->place_evidences.resize(2);
   }
   return found;
 }

@@ -264,11 +264,15 @@ struct FeatureOdometry : OdometryRun {
     const double instant = fractionOf(parameters.pose_instant);
     report.state = state;
     report.world_T_sensor = started ? pose.at(instant) : initial_pose;
-    report.covariance = report.registration.covariance;
+    if (state == TrackingState::tracked || state == TrackingState::doubtful) {
+      MotionEstimate found = motion;
+      found.place(pose.middle, report.registration.covariance);
+      report.covariance = covarianceAtInstant(found, sweep_fraction);
+    }
     if (state == TrackingState::predicted) {
       const MotionEstimate predicted = predictMotion(periodsKnown());
       report.world_T_sensor = SweepPose{predicted.pose(), sweep_fraction * predicted.velocity()}.at(instant);
-      report.covariance = predicted.poseCovariance();
+      report.covariance = covarianceAtInstant(predicted, sweep_fraction);
     } else if (state == TrackingState::doubtful) {
       report.covariance.topLeftCorner<3, 3>() += told_motion.open();
     }

@@ -124,18 +124,16 @@ double FirstMotionSearch::same() const
   return kNear / second_.periods;
 }
 
-/// The few whose evidence is best and not hopelessly less than the best, no two of them the same.
+/// Those whose evidence is not hopelessly less than the best, that first, no two of them the same.
 std::vector<Vector6> FirstMotionSearch::likelyMotions() const
 {
-  constexpr std::size_t kMostLikely = 8;
-  constexpr double kHopeless = 20.0;  // of thinned sweeps, whose points count as some 25 independent ones
+  constexpr double kHopeless = 40.0;  // of thinned sweeps: among cars that keep pace the road may be 25 behind
   std::vector<Found> best_first = found_;
   std::stable_sort(best_first.begin(), best_first.end(),
                    [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
   std::vector<Vector6> likely;
   for (const Found& found : best_first) {
-    if (likely.size() < kMostLikely && found.evidence > best_first.front().evidence - kHopeless &&
-        !isAmong(likely, found.velocity, same())) {
+    if (found.evidence > best_first.front().evidence - kHopeless && !isAmong(likely, found.velocity, same())) {
       likely.push_back(found.velocity);
     }
   }

@@ -1,6 +1,7 @@
 #include "odometry/hypotheses.h"
 
 #include "common/side_by_side.h"
+#include "odometry/place_evidence.h"
 
 #include <Eigen/Cholesky>
 
@@ -45,35 +46,27 @@ bool haveMovedAlike(const Hypothesis& a, const Hypothesis& b)
   return off.dot(expected.ldlt().solve(off)) < kMean;
 }
 
-/// Sweeps by whose points two are compared.
+/// Sweeps by which two are compared.
 constexpr std::size_t kComparedSweeps = 10;
 
-/// Whether one was less likely than another at a sweep that both took, and explained fewer points better than that did,
-/// by more than chance, in the sweeps up to it. Points are counted, whatever each of them tells: what goes along with
-/// the sensor, as cars that keep pace do, may tell more than the road does, but at fewer points.
+/// Whether one was less likely than another at a sweep that both took, and explained fewer places better than that did,
+/// by more than chance, in the sweeps up to it. What goes along with the sensor, as cars that keep pace do, may tell
+/// more than the road does, but in fewer places.
 bool wasWorse(const Hypothesis& one, const Hypothesis& other, std::size_t then)
 {
-  constexpr double kSurely = 4.0;  // standard deviations: several are compared, sweep after sweep, by young maps
-  double lead = 0.0;
-  double differing = 0.0;
+  PlaceVotes votes;
   for (std::size_t k = then + 1 - std::min(then + 1, kComparedSweeps); k <= then; ++k) {
-    const std::vector<float>& own = one.point_evidences[k];
-    const std::vector<float>& others = other.point_evidences[k];
-    for (std::size_t i = 0; i < std::min(own.size(), others.size()); ++i) {
-      lead += static_cast<double>(others[i] > own[i]) - static_cast<double>(others[i] < own[i]);
-      differing += static_cast<double>(others[i] != own[i]);
-    }
+    votes.add(one.place_evidences[k], other.place_evidences[k]);
   }
-  return one.evidences[then] < other.evidences[then] &&
-         lead > kSurely * std::sqrt(kResidualsPerIndependentOne * differing);
+  return one.evidences[then] < other.evidences[then] && votes.areSurelyAgainst();
 }
 
 /// Whether it is worse now than any of others of its direction of time.
 bool isWorse(const Hypothesis& one, const std::vector<Hypothesis>& others)
 {
   return std::any_of(others.begin(), others.end(), [&](const Hypothesis& other) {
-    const std::size_t taken = other.point_evidences.size();
-    return other.direction() == one.direction() && taken > 0 && taken == one.point_evidences.size() &&
+    const std::size_t taken = other.place_evidences.size();
+    return other.direction() == one.direction() && taken > 0 && taken == one.place_evidences.size() &&
            wasWorse(one, other, taken - 1);
   });
 }
@@ -98,7 +91,7 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
     poses.push_back(track.pose());
     evidences.push_back(track.evidence());
     if (rivals == Rivals::motions) {
-      keepPointEvidence();
+      keepEvidenceOf(sweep.places);
     }
   }
   if (rivals == Rivals::motions) {
@@ -108,11 +101,11 @@ void Hypothesis::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
 }
 
 /// Motions that are tried late are compared from the first sweep on; after the sweeps that are kept there are none.
-void Hypothesis::keepPointEvidence()
+void Hypothesis::keepEvidenceOf(const std::vector<std::uint32_t>& places)
 {
-  point_evidences.push_back(std::move(last.point_evidence));
-  for (std::size_t k = 0; point_evidences.size() > kMostKept && k + kComparedSweeps < point_evidences.size(); ++k) {
-    std::vector<float>().swap(point_evidences[k]);
+  place_evidences.push_back(evidenceByPlace(last.point_evidence, places));
+  for (std::size_t k = 0; place_evidences.size() > kMostKept && k + kComparedSweeps < place_evidences.size(); ++k) {
+    std::vector<float>().swap(place_evidences[k]);
   }
 }
 
@@ -240,7 +233,7 @@ void Hypotheses::keepOneOfEachDirection(Preference preference)
   std::stable_sort(kept.begin(), kept.end(), isLikelier);
   for (Hypothesis& hypothesis : kept) {
     hypothesis.track.beginEvidence();
-    hypothesis.point_evidences = std::vector<std::vector<float>>();
+    hypothesis.place_evidences = std::vector<std::vector<float>>();
   }
   all_ = std::move(kept);
 }

@@ -28,8 +28,8 @@ struct Hypothesis {
   Track track;
   std::vector<SweepPose> poses;   ///< of the sweeps since the first one, as far as they may be corrected
   std::vector<double> evidences;  ///< as each was taken
-  /// \ref SurfaceRegistration::point_evidence of each sweep, while rivals are motions; empty where it is not needed.
-  std::vector<std::vector<float>> point_evidences;
+  /// Of the places of each sweep, while rivals are motions; empty where it is not needed.
+  std::vector<std::vector<float>> place_evidences;
   SurfaceRegistration last;
   bool is_lost = false;
   std::size_t number = 0;
@@ -40,7 +40,7 @@ struct Hypothesis {
   [[nodiscard]] double moved() const;  ///< m, from the first sweep on
 
 private:
-  void keepPointEvidence();
+  void keepEvidenceOf(const std::vector<std::uint32_t>& places);
 };
 
 /// Which is the best one.

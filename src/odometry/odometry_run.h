@@ -2,6 +2,8 @@
 /// What every engine of the odometry keeps from scan to scan.
 #pragma once
 
+#include "common/sweep_trajectory.h"
+#include "motion/motion_estimate.h"
 #include "motion/pending_hint.h"
 #include "motion/rest.h"
 #include "motion/scan_clock.h"
@@ -89,6 +91,13 @@ struct OdometryRun {
     return TrackingState::doubtful;
   }
 
+  /// Of the pose that is given out, which is not that of mid-sweep: the velocity may be off, and change meanwhile.
+  [[nodiscard]] Matrix6 covarianceAtInstant(MotionEstimate at_middle, double sweep) const
+  {
+    at_middle.predict((fractionOf(parameters.pose_instant) - SweepTrajectory::kMiddle) * sweep);
+    return at_middle.poseCovariance();
+  }
+
   /// A sensor that stands still is where its poses are in the mean. Those since it came to rest are corrected as soon
   /// as it is known that it did, but for the first scan's, which is given.
   void noteRest()
@@ -100,11 +109,12 @@ struct OdometryRun {
     std::vector<SE3>& corrected = report.corrected_poses;
     if (!corrected.empty()) {
       rest = Rest();
-      std::for_each(corrected.begin(), corrected.end(), [&](const SE3& pose) { rest.take(pose); });
+      std::for_each(corrected.begin(), corrected.end(),
+                    [&](const SE3& pose) { rest.take(pose, report.registration.covariance); });
       rests_since_first = rest.poses() == static_cast<int>(corrected.size());
     }
     const bool was_known = rest.isAtRest() && corrected.empty();
-    rest.take(report.world_T_sensor);
+    rest.take(report.world_T_sensor, report.registration.covariance);
     rests_since_first = report.state == TrackingState::initialized || (rests_since_first && rest.poses() > 1);
     report.at_rest = rest.isAtRest();
     if (!report.at_rest) {

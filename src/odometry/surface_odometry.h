@@ -9,6 +9,7 @@
 #include "odometry/tracker.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -237,12 +238,17 @@ struct SurfaceOdometry : OdometryRun {
   void noteCovariance()
   {
     if (report.state == TrackingState::predicted && tracker.isTracking()) {
-      report.covariance = turned(predicted().poseCovariance() + tracker.spread(), world_T_track);
+      report.covariance = turned(covarianceNow(predicted()) + tracker.spread(), world_T_track);
     } else if (report.state == TrackingState::tracked || report.state == TrackingState::doubtful) {
       Matrix6 besides = tracker.spread();
       besides.topLeftCorner<3, 3>() += told_motion.open();
-      report.covariance = report.registration.covariance + turned(besides, world_T_track);
+      report.covariance = turned(covarianceNow(tracker.track().motion()) + besides, world_T_track);
     }
+  }
+
+  [[nodiscard]] Matrix6 covarianceNow(const MotionEstimate& at_middle) const
+  {
+    return covarianceAtInstant(at_middle, std::abs(direction()) * sweep_fraction);
   }
 
   [[nodiscard]] SweepPose poseNow() const

@@ -7,6 +7,7 @@
 #include <pcl_floam/filters/core/scan_points.h>
 #include <pcl_floam/motion/motion_hint.h>
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -14,11 +15,12 @@ namespace pcl_floam {
 
 /// The points of one sweep, in the sensor's frame, each at the instant of its own measurement.
 struct Sweep {
-  std::vector<ScanPoint> dense;   ///< what enters the map: no closer together than its cells tell apart
-  std::vector<ScanPoint> sample;  ///< what is registered: one of each of the map's finest cells
-  std::vector<ScanPoint> edges;   ///< the paper's edge features
-  double periods = 1.0;           ///< since the sweep before, > 0 ...
-  double periods_error = 0.0;     ///< ... and how far off that may be, one standard deviation
+  std::vector<ScanPoint> dense;       ///< what enters the map: no closer together than its cells tell apart
+  std::vector<ScanPoint> sample;      ///< what is registered: one of each of the map's finest cells
+  std::vector<std::uint32_t> places;  ///< of each of these the number of the place that it is in, while motions compete
+  std::vector<ScanPoint> edges;       ///< the paper's edge features
+  double periods = 1.0;               ///< since the sweep before, > 0 ...
+  double periods_error = 0.0;         ///< ... and how far off that may be, one standard deviation
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
   bool is_direction_known = true;  ///< of time: else it may run the other way, or the points may be of one instant

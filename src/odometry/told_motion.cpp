@@ -13,7 +13,8 @@ namespace pcl_floam {
 namespace {
 
 /// What two scans together have to tell of the position, one standard deviation in m: more than a single return would
-/// (2 cm), as the errors that all of a laser's returns share can look like as much about a motion that is wrong.
+/// (2 cm), as the errors that all of a laser's returns share can look like as much about a motion that is wrong. After
+/// a scan that leaves a direction open, the next one may seem to tell of it by chance.
 constexpr double kTold = 0.012;
 /// One alone, for what was told before to last: half a metre in the ten scans of a second.
 constexpr double kOpen = 0.05;
@@ -40,7 +41,9 @@ void ToldMotion::take(const Eigen::Matrix3d& position, double periods)
   const double information = 1.0 / (deviation_ * deviation_);
   const double together = information + (periods < kNextScan ? last_ : 0.0);
   const bool is_known = is_told_ && periods <= kLongestKnown;
-  is_told_ = deviation_ <= kOpen && (is_known || together >= 1.0 / (kTold * kTold));
+  const bool is_open = !(deviation_ <= kOpen);
+  is_told_ = !is_open && (is_known || (!was_open_ && together >= 1.0 / (kTold * kTold)));
+  was_open_ = is_open;
   last_ = information;
   open_.setZero();
   for (Eigen::Index i = 0; i < 3 && !is_told_; ++i) {

@@ -45,6 +45,7 @@ private:
   Eigen::Matrix3d open_ = Eigen::Matrix3d::Zero();
   double deviation_ = 0.0;
   double last_ = 0.0;  // information of the scan before, 1/m^2
+  bool was_open_ = false;
   bool is_told_ = false;
 };
 

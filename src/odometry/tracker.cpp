@@ -1,5 +1,7 @@
 #include "odometry/tracker.h"
 
+#include "odometry/place_evidence.h"
+
 #include <utility>
 
 namespace pcl_floam {
@@ -57,6 +59,10 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
   }
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
   choosePoints(sweep);
+  sweep.places.clear();
+  if (!isTracking() || start_) {
+    sweep.places = placesOf(sweep.sample, settings_.side);
+  }
   findStraightRuns(returns, sweep.sample);
 }
 

@@ -144,9 +144,7 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   for (std::size_t i = 0; i < end - begin; ++i) {
     placed[i] = placedAt(places[i], points[i * stride]);
     places[i] = placed[i].place;
-    // At rest a laser draws the same curve again, place by place: what is no information about the pose is evidence
-    // for it.
-    lasers[i] = weighs_evidence ? kNoLaser : points[i * stride].laser;
+    lasers[i] = points[i * stride].laser;
   }
   if (found == nullptr) {
     term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());

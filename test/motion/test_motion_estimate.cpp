@@ -46,6 +46,24 @@ TEST(MotionEstimate, PredictsTheSameInOneStepOrInTwo)
   EXPECT_LT(difference.norm(), 0.05 * Matrix6(once.poseCovariance()).norm());
 }
 
+TEST(MotionEstimate, IsNoSurerOfWhatWasThanOfWhatComes)
+{
+  std::mt19937 random(5);
+  const MotionEstimate now = afterSteps(test::randomTwist(random, 0.5, 0.2), 5);
+  MotionEstimate before = now;
+  MotionEstimate after = now;
+  before.predict(-0.5);
+  after.predict(0.5);
+  EXPECT_LT(poseDistance(before.pose() * exp(now.velocity()), after.pose()), 1e-9);
+  EXPECT_GT(before.poseCovariance().trace(), now.poseCovariance().trace());
+  EXPECT_GT(after.poseCovariance().trace(), now.poseCovariance().trace());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>> solver(before.covariance());
+  EXPECT_GT(solver.eigenvalues()[0], 0.0);
+  before.predict(0.5);
+  EXPECT_LT(poseDistance(before.pose(), now.pose()), 1e-9);
+  EXPECT_GT(before.poseCovariance().trace(), now.poseCovariance().trace()) << "the noise of both ways";
+}
+
 TEST(MotionEstimate, IsSurerAfterACorrectionAndLessSureWithTime)
 {
   MotionEstimate motion = afterSteps(Vector6::Zero(), 10);

@@ -1,4 +1,5 @@
 // Whether the sensor stands still: noise about one pose does, at any scale, and nothing that moves.
+#include "common/pi.h"
 #include "motion/rest.h"
 
 #include "support/random_motion.h"
@@ -29,6 +30,12 @@ SE3 noisy(const SE3& pose, std::mt19937& random, double noise)
   return {pose.rotation * expSO3(test::randomVector(random, noise)), pose.translation + off};
 }
 
+/// What a registration would tell of that noise, which has a third of its square along each axis.
+Matrix6 covarianceOf(double noise)
+{
+  return noise * noise / 3.0 * Matrix6::Identity();
+}
+
 /// Scans after which a path was called rest.
 int scansAtRest(const Path& path, double noise, std::uint32_t seed)
 {
@@ -36,7 +43,7 @@ int scansAtRest(const Path& path, double noise, std::uint32_t seed)
   Rest rest;
   int count = 0;
   for (int scan = 0; scan < kScans; ++scan) {
-    rest.take(noisy(path(scan), random, noise));
+    rest.take(noisy(path(scan), random, noise), covarianceOf(noise));
     count += rest.isAtRest() ? 1 : 0;
   }
   return count;
@@ -48,7 +55,7 @@ TEST(Rest, StandsWhereItsPosesAreInTheMean)
     std::mt19937 random(7);
     Rest rest;
     for (int scan = 0; scan < kScans; ++scan) {
-      rest.take(noisy(standing(scan), random, noise));
+      rest.take(noisy(standing(scan), random, noise), covarianceOf(noise));
     }
     ASSERT_TRUE(rest.isAtRest()) << noise;
     EXPECT_EQ(rest.poses(), kScans);
@@ -111,14 +118,16 @@ TEST(Rest, NoiseHardlyEverEndsIt)
   constexpr int kRuns = 10000;
   constexpr int kFew = 20;
   constexpr double kChance = 1.0 / 36000.0;
+  constexpr double kTold = 10.0 * kNoise;  // that alone ends nothing
   std::mt19937 random(11);
   std::normal_distribution<double> normal(0.0, kNoise);
   int ended = 0;
   for (int run = 0; run < kRuns; ++run) {
     Rest rest;
-    rest.take(standing(0));
+    rest.take(standing(0), covarianceOf(kTold));
     for (int scan = 1; scan < kFew; ++scan) {
-      rest.take({standing(0).rotation, standing(0).translation + normal(random) * Eigen::Vector3d::UnitX()});
+      rest.take({standing(0).rotation, standing(0).translation + normal(random) * Eigen::Vector3d::UnitX()},
+                covarianceOf(kTold));
       ended += rest.poses() == 1 ? 1 : 0;
     }
   }
@@ -133,8 +142,22 @@ TEST(Rest, AnOutlierDoesNotHideTheMotionAfterIt)
     for (int scan = 0; scan < kScans; ++scan) {
       const double way = scan == 5 ? 100.0 : std::max(0, scan - 15) * 5.0;  // noises
       const SE3 pose = standing(0) * SE3(Eigen::Matrix3d::Identity(), {way * kNoise, 0.0, 0.0});
-      rest.take(noisy(pose, random, kNoise));
+      rest.take(noisy(pose, random, kNoise), covarianceOf(kNoise));
       EXPECT_FALSE(rest.isAtRest()) << seed << ' ' << scan;
+    }
+  }
+}
+
+/// Each swing undoes the one before, as noise does, but is more than a registration may be off.
+TEST(Rest, WhatShakesDoesNotStandStill)
+{
+  for (const double hertz : {2.7, 3.5, 4.3, 5.0, 6.0, 7.3}) {
+    for (const double swing : {20.0, 500.0}) {  // noises
+      const auto shaken = [&](int scan) { return swing * kNoise * std::sin(0.2 * kPi * hertz * scan + 1.0); };
+      const auto shifted = [&](int scan) { return SE3(Eigen::Matrix3d::Identity(), {0.0, shaken(scan), 0.0}); };
+      const auto turned = [&](int scan) { return SE3(expSO3({shaken(scan), 0.0, 0.0}), Eigen::Vector3d::Zero()); };
+      EXPECT_EQ(scansAtRest(shifted, kNoise, 5), 0) << hertz << ' ' << swing;
+      EXPECT_EQ(scansAtRest(turned, kNoise, 6), 0) << hertz << ' ' << swing;
     }
   }
 }
@@ -144,11 +167,11 @@ TEST(Rest, EndsAsSoonAsAPoseIsFarOff)
   std::mt19937 random(3);
   Rest rest;
   for (int scan = 0; scan < kScans; ++scan) {
-    rest.take(noisy(standing(scan), random, kNoise));
+    rest.take(noisy(standing(scan), random, kNoise), covarianceOf(kNoise));
   }
   ASSERT_TRUE(rest.isAtRest());
   const SE3 moved = standing(0) * exp((Vector6() << 10.0 * kNoise, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
-  rest.take(moved);
+  rest.take(moved, covarianceOf(kNoise));
   EXPECT_FALSE(rest.isAtRest());
   EXPECT_EQ(rest.poses(), 1);
   EXPECT_EQ(rest.pose().translation, moved.translation);

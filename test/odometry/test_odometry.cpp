@@ -49,6 +49,27 @@ TEST(Odometry, RecoversAnAcceleratedMotion)
   }
 }
 
+/// A pose is registered at the middle of its sweep: what is given of its ends is known as well as the velocity is.
+TEST(Odometry, TheEndsOfASweepAreLessSureThanItsMiddle)
+{
+  std::array<double, 3> variance{};
+  for (const PoseInstant instant : {PoseInstant::start, PoseInstant::middle, PoseInstant::end}) {
+    OdometryParameters parameters = defaults();
+    parameters.pose_instant = instant;
+    Odometry<PointXYZIRT> odometry(parameters);
+    for (int k = 0; k < kScans; ++k) {
+      odometry.track(sweep(acceleratedPath, k));
+    }
+    const Matrix6& covariance = odometry.report().covariance;
+    EXPECT_EQ(Matrix6(covariance.transpose()), covariance);
+    variance[static_cast<std::size_t>(instant)] = covariance.trace();
+  }
+  EXPECT_GT(variance[static_cast<std::size_t>(PoseInstant::start)],
+            1.01 * variance[static_cast<std::size_t>(PoseInstant::middle)]);
+  EXPECT_GT(variance[static_cast<std::size_t>(PoseInstant::end)],
+            1.01 * variance[static_cast<std::size_t>(PoseInstant::middle)]);
+}
+
 template <typename Poses>
 Eigen::Vector3d meanOf(Poses begin, Poses end)
 {

@@ -90,6 +90,17 @@ TEST(ToldMotion, TwoScansInARowTellTogether)
   EXPECT_FALSE(motion.isTold());
 }
 
+TEST(ToldMotion, OneScanBetweenThoseThatLeaveADirectionOpenDoesNotTellOfIt)
+{
+  ToldMotion motion;
+  for (int scan = 0; scan < 10; ++scan) {
+    motion.take(position(scan % 2 == 0 ? kNothing : kWell), 1.0);
+    EXPECT_FALSE(motion.isTold()) << scan;
+  }
+  motion.take(position(kWell), 1.0);
+  EXPECT_TRUE(motion.isTold());
+}
+
 TEST(ToldMotion, WhatIsNoNumberTellsNothing)
 {
   ToldMotion motion;

@@ -72,12 +72,13 @@ struct OdometryReport {
   /// `doubtful` until two scans in a row together tell to 1.2 cm, and again from one on that tells to no more than 5
   /// cm, after a gap of ten periods, and where a pose was set.
   double told_deviation = 0.0;
-  /// Of the pose at the middle of the sweep; order, axes and units are those of the registration's. What the
-  /// registration may be off against the map; along directions that the scans said nothing of (weak ones, by surfaces;
-  /// all of them while poses are predicted) what the velocity may have been off since they were seen last. While a
-  /// position is doubtful since nothing but the expectation holds it, any motion since the scan before counts, up to
-  /// 4 m a period; what was wrong before that is not in it. Where several motions are followed, by surfaces, it reaches
-  /// from this one to the others. By features weak ones have a variance too large to be used. Zero for the first scan.
+  /// Of `world_T_sensor`; order, axes and units are those of the registration's, which is of the middle of the sweep:
+  /// towards its ends the velocity counts, too. What the registration may be off against the map; along directions that
+  /// the scans said nothing of (weak ones, by surfaces; all of them while poses are predicted) what the velocity may
+  /// have been off since they were seen last. While a position is doubtful since nothing but the expectation holds it,
+  /// any motion since the scan before counts, up to 4 m a period; what was wrong before that is not in it. Where
+  /// several motions are followed, by surfaces, it reaches from this one to the others. By features weak ones have a
+  /// variance too large to be used. Zero for the first scan.
   Matrix6 covariance = Matrix6::Zero();
   OdometryEngine engine = OdometryEngine::surfaces;           ///< what the scan was registered by
   ScanLineFailure scan_line_failure = ScanLineFailure::none;  ///< why the scan was worked from space, not scan lines
