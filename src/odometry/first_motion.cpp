@@ -127,13 +127,15 @@ double FirstMotionSearch::same() const
 /// Those whose evidence is not hopelessly less than the best, that first, no two of them the same.
 std::vector<Vector6> FirstMotionSearch::likelyMotions() const
 {
-  constexpr double kHopeless = 40.0;  // of thinned sweeps: among cars that keep pace the road may be 25 behind
+  constexpr double kHopeless = 0.05;  // a point: among cars that keep pace the road may be nearly as far behind
   std::vector<Found> best_first = found_;
   std::stable_sort(best_first.begin(), best_first.end(),
                    [](const Found& a, const Found& b) { return a.evidence > b.evidence; });
+  const double least =
+      best_first.empty() ? 0.0 : best_first.front().evidence - kHopeless * static_cast<double>(second_.sample.size());
   std::vector<Vector6> likely;
   for (const Found& found : best_first) {
-    if (found.evidence > best_first.front().evidence - kHopeless && !isAmong(likely, found.velocity, same())) {
+    if (found.evidence > least && !isAmong(likely, found.velocity, same())) {
       likely.push_back(found.velocity);
     }
   }

@@ -95,7 +95,8 @@ struct OdometryRun {
   [[nodiscard]] Matrix6 covarianceAtInstant(MotionEstimate at_middle, double sweep) const
   {
     at_middle.predict((fractionOf(parameters.pose_instant) - SweepTrajectory::kMiddle) * sweep);
-    return at_middle.poseCovariance();
+    const Matrix6 covariance = at_middle.poseCovariance();
+    return 0.5 * (covariance + covariance.transpose());  // but for rounding
   }
 
   /// A sensor that stands still is where its poses are in the mean. Those since it came to rest are corrected as soon

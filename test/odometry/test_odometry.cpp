@@ -61,7 +61,7 @@ TEST(Odometry, TheEndsOfASweepAreLessSureThanItsMiddle)
       odometry.track(sweep(acceleratedPath, k));
     }
     const Matrix6& covariance = odometry.report().covariance;
-    EXPECT_EQ(Matrix6(covariance.transpose()), covariance);
+    EXPECT_LT((covariance - covariance.transpose()).norm(), 1e-12 * covariance.norm());
     variance[static_cast<std::size_t>(instant)] = covariance.trace();
   }
   EXPECT_GT(variance[static_cast<std::size_t>(PoseInstant::start)],

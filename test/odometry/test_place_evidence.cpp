@@ -12,7 +12,7 @@
 namespace pcl_floam {
 namespace {
 
-constexpr double kSide = 0.5;  // m, of the map's finest cells
+constexpr double kFinest = 0.5;  // m, of the map's finest cells
 
 ScanPoint pointAt(double x, double y)
 {
@@ -46,7 +46,7 @@ struct Scene {
 
   [[nodiscard]] std::vector<float> of(const std::vector<float>& evidence) const
   {
-    return evidenceByPlace(evidence, placesOf(points, kSide));
+    return evidenceByPlace(evidence, placesOf(points, kFinest));
   }
 };
 
@@ -56,7 +56,7 @@ TEST(PlaceEvidence, NeighboursAreOfOnePlaceAndFarOnesOfOthers)
   for (int i = 0; i < 1000; ++i) {
     line.push_back(pointAt(0.1 * i, 0.3));
   }
-  const std::vector<std::uint32_t> places = placesOf(line, kSide);
+  const std::vector<std::uint32_t> places = placesOf(line, kFinest);
   ASSERT_EQ(places.size(), line.size());
   EXPECT_EQ(std::set<std::uint32_t>(places.begin(), places.end()).size(), 50U);  // of 2 m each
   EXPECT_EQ(*std::max_element(places.begin(), places.end()), 49U);
