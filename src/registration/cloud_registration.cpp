@@ -104,7 +104,8 @@ private:
     const Matrix6 to_centroid = leverOf(-alignment_.arm());
     report_.information = propagated(to_centroid.transpose(), sums.information);
     const Matrix6 to_origin = leverOf(alignment_.arm());
-    report_.covariance = propagated(to_origin, analysis.covariance(sums.residualVariance(), shares));
+    report_.covariance =
+        propagated(to_origin, analysis.covariance(kMatchesPerIndependentOne * sums.residualVariance(), shares));
     for (int i = 0; i < 6; ++i) {
       if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
         report_.covariance.row(i).setZero();

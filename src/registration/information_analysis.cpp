@@ -126,22 +126,21 @@ Matrix6 InformationAnalysis::covariance(double variance, const std::vector<doubl
 std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, const std::vector<double>& shares) const
 {
   std::vector<WeakDirection> weak;
-  for (int i = 0; i < below(limit); ++i) {
+  for (int i = 0; i < directions(); ++i) {
     const auto n = static_cast<std::size_t>(i);
     const double share = n < shares.size() ? shares[n] : 1.0;
-    weak.push_back({eigenvectors_.col(i), std::max(0.0, share * share * eigenvalues_[i])});
+    if (isBelow(limit, i, share)) {
+      weak.push_back({eigenvectors_.col(i), std::max(0.0, share * share * eigenvalues_[i])});
+    }
   }
   return weak;
 }
 
-/// Neighbouring residuals share the errors of the map's planes and of the sweep's motion: so many say no more than one
-/// that is independent.
 double featureVariance(const NormalEquations& equations)
 {
-  constexpr double kFeaturesPerIndependentOne = 7.0;
   constexpr double kLeast = 1e-6;  // m^2: no map is better than to a millimetre, however well it fits
   const double mean_weight = equations.given_weight / (equations.edges + equations.planes);
-  return kFeaturesPerIndependentOne * mean_weight * std::max(kLeast, equations.residualVariance());
+  return kMatchesPerIndependentOne * mean_weight * std::max(kLeast, equations.residualVariance());
 }
 
 }  // namespace pcl_floam

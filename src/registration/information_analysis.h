@@ -35,7 +35,13 @@ public:
 
   /// How many directions, from the least to the best held, have an eigenvalue below a limit.
   [[nodiscard]] int below(double limit) const;
+  [[nodiscard]] int directions() const { return static_cast<int>(eigenvalues_.size()); }
   [[nodiscard]] double largest() const;
+  /// Whether what is true of direction \p i's eigenvalue is below a limit. \param share of its root
+  [[nodiscard]] bool isBelow(double limit, int i, double share) const
+  {
+    return share * share * eigenvalues_[i] < limit;
+  }
 
   /// A perturbation along direction \p i that moves the typical point by 1 m, and the gradient along it per m, as the
   /// correspondences stand.
@@ -69,6 +75,10 @@ private:
   Motions eigenvectors_;  ///< columns, of the same
   Within inverse_;        ///< of H in their axes within the strong directions, zero along weak ones
 };
+
+/// Neighbouring residuals share the errors of what they are matched with and of the sweep's motion: so many say no more
+/// than one that is independent.
+inline constexpr double kMatchesPerIndependentOne = 7.0;
 
 /// Variance of a residual of weight 1 of features, were they independent, as the poses' errors show it, m^2.
 [[nodiscard]] double featureVariance(const NormalEquations& equations);
