@@ -126,12 +126,10 @@ Matrix6 InformationAnalysis::covariance(double variance, const std::vector<doubl
 std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, const std::vector<double>& shares) const
 {
   std::vector<WeakDirection> weak;
-  for (int i = 0; i < directions(); ++i) {
+  for (int i = 0; i < below(limit); ++i) {
     const auto n = static_cast<std::size_t>(i);
     const double share = n < shares.size() ? shares[n] : 1.0;
-    if (isBelow(limit, i, share)) {
-      weak.push_back({eigenvectors_.col(i), std::max(0.0, share * share * eigenvalues_[i])});
-    }
+    weak.push_back({eigenvectors_.col(i), std::max(0.0, share * share * eigenvalues_[i])});
   }
   return weak;
 }

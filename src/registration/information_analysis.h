@@ -35,13 +35,7 @@ public:
 
   /// How many directions, from the least to the best held, have an eigenvalue below a limit.
   [[nodiscard]] int below(double limit) const;
-  [[nodiscard]] int directions() const { return static_cast<int>(eigenvalues_.size()); }
   [[nodiscard]] double largest() const;
-  /// Whether what is true of direction \p i's eigenvalue is below a limit. \param share of its root
-  [[nodiscard]] bool isBelow(double limit, int i, double share) const
-  {
-    return share * share * eigenvalues_[i] < limit;
-  }
 
   /// A perturbation along direction \p i that moves the typical point by 1 m, and the gradient along it per m, as the
   /// correspondences stand.

@@ -40,16 +40,6 @@ bool WeakDirections::settle(const SE3& guess, double epsilon)
   return false;
 }
 
-/// How many directions are looked at, from the least held one on: all of them where many points are on no surface, or
-/// noisier than their neighbours are far apart, since such seem to hold every direction as well.
-int WeakDirections::looked(const InformationAnalysis& analysis) const
-{
-  constexpr double kFew = 0.25;  // of the matches
-  const NormalEquations& sums = alignment_.sums();
-  const bool may_all_be_open = sums.points > kFew * sums.count();
-  return may_all_be_open ? analysis.directions() : analysis.below(weak_ * analysis.largest());
-}
-
 /// \param[out] weak the weak directions
 Vector6 WeakDirections::step(const SE3& guess, Motions& weak)
 {
@@ -59,12 +49,9 @@ Vector6 WeakDirections::step(const SE3& guess, Motions& weak)
   since_guess << alignment_.pose().translation - guess.translation,
       logSO3(alignment_.pose().rotation * guess.rotation.transpose());
   Vector6 step = Vector6::Zero();
-  for (int i = 0; i < looked(analysis); ++i) {
+  for (int i = 0; i < analysis.below(weak_ * analysis.largest()); ++i) {
     const Vector6 motion = analysis.motion(i);
     const double share = this->share(analysis, i);
-    if (!analysis.isBelow(weak_ * analysis.largest(), i, share)) {
-      continue;
-    }
     const double way =
         share > 0.0 ? -motion.dot(sums.gradient) / (share * analysis.stiffness(i)) : -analysis.part(since_guess, i);
     step += (share > 0.0 ? std::clamp(way, -level_.spacing(), level_.spacing()) : way) * motion;
@@ -79,7 +66,7 @@ std::vector<double> WeakDirections::shares()
   const InformationAnalysis analysis = alignment_.analysis();
   std::vector<double> shares;
   shares.reserve(6);
-  for (int i = 0; i < looked(analysis); ++i) {
+  for (int i = 0; i < analysis.below(weak_ * analysis.largest()); ++i) {
     shares.push_back(share(analysis, i));
   }
   return shares;

@@ -25,7 +25,6 @@ public:
   [[nodiscard]] std::vector<double> shares();
 
 private:
-  [[nodiscard]] int looked(const InformationAnalysis& analysis) const;
   [[nodiscard]] double share(const InformationAnalysis& analysis, int direction);
   [[nodiscard]] double pull(const Vector6& motion, double way);
   [[nodiscard]] Vector6 step(const SE3& guess, Motions& weak);

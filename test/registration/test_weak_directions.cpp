@@ -12,13 +12,13 @@
 namespace pcl_floam::test {
 namespace {
 
-/// A square floor with noise of 1 cm, or as much as is said, and a wall along x if there is one, about farOff().
-Cloud::Ptr floorOf(unsigned seed, double half_side, bool wall, double noise = 0.01)
+/// A square floor with noise of 1 cm, and a wall along x if there is one, about farOff().
+Cloud::Ptr floorOf(unsigned seed, double half_side, bool wall)
 {
   std::mt19937 random(seed);
   auto cloud = pcl::make_shared<Cloud>();
   for (int i = 0; i < 4000; ++i) {
-    Eigen::Vector3d p(uniform(random, half_side), uniform(random, half_side), uniform(random, noise));
+    Eigen::Vector3d p(uniform(random, half_side), uniform(random, half_side), uniform(random, 0.01));
     if (wall && i % 2 == 0) {
       p = Eigen::Vector3d(p.x(), half_side + p.z(), p.y() + half_side);
     }
@@ -112,21 +112,6 @@ TEST(WeakDirections, NothingIsClaimedOfTheWayAlongFloorAndWall)
   EXPECT_GT(std::sqrt(result.report.covariance(0, 0)), 0.01);
   EXPECT_LT(std::abs(result.error[1]), 0.001);
   EXPECT_LT(std::abs(result.error[2]), 0.001);
-}
-
-/// Its neighbourhoods are no planes then, and nearest points seem to hold it along all directions.
-TEST(WeakDirections, AFloorThatIsNoisierThanItsPointsAreFarApartHoldsNoMoreThanAnother)
-{
-  constexpr double kSpacing = 0.063;  // m
-  const Vector6 twist = (Vector6() << 0.08, -0.06, 0.02, 0.01, -0.01, 0.05).finished();
-  for (const double noise : {0.5, 1.0, 2.0, 4.0}) {
-    for (const bool wall : {false, true}) {
-      const auto floor = [&](unsigned seed) { return floorOf(seed, 2.0, wall, noise * kSpacing); };
-      const Result result = align(floor(1), floor(2), twist);
-      EXPECT_GE(result.report.weak_directions.size(), wall ? 1U : 3U) << noise;
-      EXPECT_LT(deviations(result), 5.0) << noise;
-    }
-  }
 }
 
 TEST(WeakDirections, AFlatCloudDoesNotGetWorseUnseen)
