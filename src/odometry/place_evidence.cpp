@@ -48,7 +48,7 @@ void PlaceVotes::add(const std::vector<float>& own, const std::vector<float>& ot
 /// Of N places that vote by chance, the lead has a variance of N.
 bool PlaceVotes::areSurelyAgainst() const
 {
-  constexpr double kSurely = 3.5;  // standard deviations: several are compared, sweep after sweep, by young maps
+  constexpr double kSurely = 4.0;  // standard deviations: several are compared, sweep after sweep, by young maps
   return lead_ > kSurely * std::sqrt(sweeps_ * differing_);
 }
 
