@@ -101,29 +101,14 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   return found;
 }
 
-/// From several guesses the same motion may be found, sooner or later.
-bool CandidateMotions::isLikeOneLeftBehind() const
-{
-  const std::size_t now = late_->poses.size() - 1;
-  const auto lastMotion = [now](const Hypothesis& h) -> Eigen::Vector3d {
-    return h.poses[now].middle.translation - h.poses[now - 1].middle.translation;
-  };
-  return std::any_of(left_behind_.begin(), left_behind_.end(), [&](const Hypothesis& other) {
-    return other.direction() == late_->direction() && other.poses.size() > now &&
-           other.evidences[now] >= late_->evidences[now] &&
-           (lastMotion(*late_) - lastMotion(other)).norm() < search_.same();
-  });
-}
-
 /// The late one with those that are followed.
 void CandidateMotions::compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses)
 {
   if (!late_) {
     return;
   }
-  if (late_->is_lost || hypotheses.haveLeftBehind(*late_) || isLikeOneLeftBehind()) {
-    late_->track.releaseMap();
-    left_behind_.push_back(std::move(*std::exchange(late_, std::nullopt)));
+  if (late_->is_lost || hypotheses.haveLeftBehind(*late_)) {
+    late_.reset();
   } else if (late_->poses.size() == kept.size()) {
     hypotheses.dropLeftBehind(*late_);
     hypotheses.add(std::move(*std::exchange(late_, std::nullopt)));

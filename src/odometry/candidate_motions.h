@@ -43,7 +43,6 @@ private:
 
   void suppose();
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
-  [[nodiscard]] bool isLikeOneLeftBehind() const;
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
   FirstMotionSearch search_;
@@ -51,7 +50,6 @@ private:
   std::vector<Vector6> supposed_;
   std::deque<Candidate> waiting_;
   std::optional<Hypothesis> late_;
-  std::vector<Hypothesis> left_behind_;
 };
 
 }  // namespace pcl_floam

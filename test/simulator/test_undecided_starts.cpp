@@ -70,12 +70,11 @@ TEST(UndecidedStarts, HaveACovarianceThatReachesToRivals)
 /// motion, which is the right one, would be given up.
 TEST(UndecidedStarts, AreNotDecidedByAConvoy)
 {
-  constexpr double kWrong = 2.0;  // m, of 180
   FirstScans scans(slowlyTold(12, 14.0));
   OdometryReport report;
   for (int number = 0; number < 75; ++number) {
     report = scans.next();
-    EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.wayError() < kWrong) << number;
+    EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.motionError() < 0.5) << number;
   }
   EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
   EXPECT_FALSE(report.provisional);
