@@ -45,14 +45,26 @@ public:
     SurfaceRegistration result;
     conclude(result, iterate(result.report));
     if (problem_.wants_evidence && result.report.hasConverged()) {
-      weighs_evidence_ = true;
-      result.evidence = accumulate(0.0, 1).total().evidence;
-      result.point_evidence = room_.evidence;
+      weighEvidence(result);
     }
     return result;
   }
 
 private:
+  /// At rest a laser draws the same curve again, place by place. What is no information about the pose is evidence for
+  /// it; but so it does on smooth ground that goes by, and points that are asked one by one are not to be borne out by
+  /// it.
+  void weighEvidence(SurfaceRegistration& result)
+  {
+    weighs_evidence_ = true;
+    if (problem_.is_rival) {
+      accumulate(0.0, 1);
+      result.point_evidence = room_.evidence;
+    }
+    knows_lasers_ = false;
+    result.evidence = accumulate(0.0, 1).total().evidence;
+  }
+
   SurfaceSums iterate(RegistrationReport& report)
   {
     report.termination = Termination::iteration_limit;
@@ -223,6 +235,7 @@ private:
     residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.weighs_evidence = weighs_evidence_;
+    residuals.knows_lasers = knows_lasers_;
     residuals.threads = problem_.threads;
     return residuals.sumsOf(problem_.scan, problem_.edges, stride, room_);
   }
@@ -267,6 +280,7 @@ private:
   Matrix12 prior_;
   double doubt_;  // m^2, of the guess
   bool weighs_evidence_ = false;
+  bool knows_lasers_ = true;
   SurfaceRoom own_room_;
   SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration

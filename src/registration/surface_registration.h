@@ -54,9 +54,10 @@ struct SurfaceRegistration {
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
   /// anywhere within a metre.
   double evidence = 0.0;
-  std::vector<float> point_evidence;  ///< its parts by the scan's points; of edges there is none
-  Matrix6 told = Matrix6::Zero();     ///< covariance of the pose as the scan alone tells it, whatever was expected
-  std::size_t points = 0;             ///< that took part
+  std::vector<float>
+      point_evidence;              ///< of the scan's points, if it is a rival, without what a laser's own curve tells
+  Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
+  std::size_t points = 0;          ///< that took part
 
   /// Part of the points that lie on surfaces of the target.
   [[nodiscard]] double explained() const

@@ -144,7 +144,7 @@ SurfaceSums SurfaceResiduals::chunkOf(const SurfaceTerm& term, std::size_t chunk
   for (std::size_t i = 0; i < end - begin; ++i) {
     placed[i] = placedAt(places[i], points[i * stride]);
     places[i] = placed[i].place;
-    lasers[i] = points[i * stride].laser;
+    lasers[i] = knows_lasers ? points[i * stride].laser : kNoLaser;
   }
   if (found == nullptr) {
     term.target->find(places.data(), lasers.data(), end - begin, surfaces.data());

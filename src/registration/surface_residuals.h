@@ -64,6 +64,7 @@ struct SurfaceResiduals {
   Matrix6 reach = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
   double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
   bool weighs_evidence = false;     ///< else the sums have none
+  bool knows_lasers = true;         ///< else a laser's own curve bears out its points, too
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
