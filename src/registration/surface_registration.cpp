@@ -58,7 +58,7 @@ private:
   {
     weighs_evidence_ = true;
     if (problem_.is_rival) {
-      accumulate(0.0, 1);
+      static_cast<void>(accumulate(0.0, 1));
       result.point_evidence = room_.evidence;
     }
     knows_lasers_ = false;
