@@ -16,7 +16,7 @@ namespace {
 
 std::vector<SE3> trackAll(const ScanSource& scans, OdometryPipeline& odometry)
 {
-  constexpr std::size_t kTold = 12;  // by so many scans it has to be told how the sensor moves
+  constexpr std::size_t kTold = 20;  // by so many scans it has to be told how the sensor moves
   std::vector<SE3> poses;
   pcl::PCLPointCloud2 scan;
   for (std::size_t i = 0; i < scans.size(); ++i) {
