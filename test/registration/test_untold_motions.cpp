@@ -166,8 +166,8 @@ TEST(UntoldMotions, NearestPointsTellSomeByChance)
   const Lattice lattice;
   const SurfaceRegistration found = registerSurfaces(problemOf(points, lattice));
   ASSERT_TRUE(found.report.hasConverged());
-  constexpr double kNoise = 0.02;  // m, of each
-  const double as_residuals = static_cast<double>(points.size()) / (kNoise * kNoise);
+  constexpr double kOfEach = 0.02;  // m, of each
+  const double as_residuals = static_cast<double>(points.size()) / (kOfEach * kOfEach);
   EXPECT_LT(found.report.information(0, 0), 0.9 * as_residuals);
   EXPECT_GT(found.report.information(0, 0), 0.5 * as_residuals);
 }
