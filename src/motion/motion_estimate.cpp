@@ -76,8 +76,8 @@ void MotionEstimate::forgetAlong(const Eigen::Vector3d& direction, double period
 void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hint, double periods_error)
 {
   constexpr double kMostSteps = 16.0;
-  const double steps =
-      std::clamp(std::ceil(std::abs(periods)), 1.0, kMostSteps);  // noise turns with the sensor on the way
+  // Noise turns with the sensor on the way.
+  const double steps = std::clamp(std::ceil(std::abs(periods)), 1.0, kMostSteps);
   const SE3 before = pose_;
   Growth growth;
   for (int i = 0; i < static_cast<int>(steps); ++i) {

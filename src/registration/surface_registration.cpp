@@ -57,7 +57,7 @@ private:
   void weighEvidence(SurfaceRegistration& result)
   {
     weighs_evidence_ = true;
-    if (problem_.is_rival) {
+    if (problem_.wants_point_evidence) {
       static_cast<void>(accumulate(0.0, 1));
       result.point_evidence = room_.evidence;
     }

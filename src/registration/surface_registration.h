@@ -39,6 +39,7 @@ struct SurfaceProblem {
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   bool wants_evidence = false;   ///< else the result has none
+  bool wants_point_evidence = false;
   /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
   /// only what they do not tell is left to the prior.
   bool is_rival = false;
@@ -54,8 +55,8 @@ struct SurfaceRegistration {
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
   /// anywhere within a metre.
   double evidence = 0.0;
-  std::vector<float>
-      point_evidence;              ///< of the scan's points, if it is a rival, without what a laser's own curve tells
+  /// Of the scan's points, if that was wanted, without what a laser's own curve tells.
+  std::vector<float> point_evidence;
   Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
   std::size_t points = 0;          ///< that took part
 
