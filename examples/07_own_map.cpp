@@ -5,69 +5,56 @@
 //   000019.pcd: tracked, at 1.31 0.00 0.01 m
 #include <bitset>
 #include <Eigen/Eigenvalues>
-#include <map>
 #include "each_scan.h"
 
-class NdtMap : public pcl_floam::SurfaceMap {
+struct NdtMap : pcl_floam::SurfaceMap {
   struct Cell {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d outer = Eigen::Matrix3d::Zero();
-    std::uint32_t count = 0;
+    Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // sum of x x^T with x = (x, y, z, 1)
     std::bitset<128> lasers;  // that have seen it: what one draws by itself, on whatever it hits, is no plane
-    [[nodiscard]] pcl_floam::Surface planeFor(std::uint32_t laser) const
-    {
-      pcl_floam::Surface plane;
-      const Eigen::Vector3d mean = sum / count;
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(outer / count - mean * mean.transpose());
-      const Eigen::Vector3d variances = eigen.eigenvalues();  // rising
-      const std::size_t others = lasers.count() - (lasers.test(laser % 128) ? 1 : 0);
-      if (count > 5 && others > 1 && variances[0] < 0.5 * variances[1]) {
-        plane.kind = pcl_floam::SurfaceKind::plane;
-        plane.center = mean;
-        plane.direction = eigen.eigenvectors().col(0);
-        plane.thickness = variances[0];
-        plane.extent = variances[1];
-        plane.count = count;
-      }
-      return plane;
-    }
   };
   static constexpr double kSide = 2.5;  // m
-  std::map<std::array<double, 3>, Cell> cells_;
+  std::map<std::array<double, 3>, Cell> cells;
 
-  static std::array<double, 3> keyOf(const Eigen::Vector3d& p)
+  static auto keyOf(const Eigen::Vector3d& p) { return std::array{floor(p.x()), floor(p.y()), floor(p.z())}; }
+  static pcl_floam::Surface planeOf(const Cell& cell)
   {
-    return {std::floor(p.x() / kSide), std::floor(p.y() / kSide), std::floor(p.z() / kSide)};
+    pcl_floam::Surface plane;
+    plane.count = static_cast<std::uint32_t>(cell.moments(3, 3));
+    plane.center = cell.moments.topRightCorner<3, 1>() / plane.count;
+    const Eigen::Matrix3d squares = cell.moments.topLeftCorner<3, 3>() / plane.count;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares - plane.center * plane.center.transpose());
+    plane.direction = eigen.eigenvectors().col(0);
+    plane.thickness = eigen.eigenvalues()[0];  // of the variances, which rise
+    plane.extent = eigen.eigenvalues()[1];
+    const bool is_plane = plane.count > 5 && cell.lasers.count() > 2 && plane.thickness < 0.5 * plane.extent;
+    plane.kind = is_plane ? pcl_floam::SurfaceKind::plane : pcl_floam::SurfaceKind::unknown;
+    return plane;
   }
-
-public:
   std::unique_ptr<SurfaceMap> makeEmpty(double /*side*/) const override { return std::make_unique<NdtMap>(); }
   std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<NdtMap>(*this); }
-  bool empty() const override { return cells_.empty(); }
-  void clear() override { cells_.clear(); }
+  bool empty() const override { return cells.empty(); }
+  void clear() override { cells.clear(); }
   void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override
   {
     for (std::size_t i = 0; i < count; ++i) {
-      Cell& cell = cells_[keyOf(places[i])];
-      cell.sum += places[i];
-      cell.outer += places[i] * places[i].transpose();
+      Cell& cell = cells[keyOf(places[i] / kSide)];
+      const Eigen::Vector4d x = places[i].homogeneous();
+      cell.moments += x * x.transpose();
       cell.lasers.set(lasers[i] % 128);
-      ++cell.count;
     }
   }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-            pcl_floam::Surface* surfaces) const override
+  void find(const Eigen::Vector3d* p, const std::uint32_t*, std::size_t n, pcl_floam::Surface* surfaces) const override
   {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto found = places[i].allFinite() ? cells_.find(keyOf(places[i])) : cells_.end();
-      surfaces[i] = found == cells_.end() ? pcl_floam::Surface() : found->second.planeFor(lasers[i]);
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto cell = p[i].allFinite() ? cells.find(keyOf(p[i] / kSide)) : cells.end();
+      surfaces[i] = cell == cells.end() ? pcl_floam::Surface() : planeOf(cell->second);
     }
   }
 };
 
 int main(int argc, char** argv)
 {
-  pcl_floam::OdometryPipeline odometry;
-  odometry.setComponents({{}, {}, {}, std::make_shared<NdtMap>()});
-  return trackEachScan(argc, argv, [&](const auto& scan, const auto& stamp) { return odometry.track(scan, stamp); });
+  pcl_floam::OdometryComponents components;
+  components.map = std::make_shared<NdtMap>();
+  return trackEachScan(argc, argv, components);
 }

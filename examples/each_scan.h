@@ -4,8 +4,14 @@
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/odometry/odometry.h>
 
+#include <array>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
 
 /// Tracks each scan by `track(view, stamp)`, which gives the report, and prints what came of it.
 /// \return the program's exit status
@@ -24,4 +30,12 @@ try {
 } catch (const pcl_floam::FileError& error) {
   std::cerr << error.what() << '\n';
   return 2;
+}
+
+/// The same by an odometry with objects of one's own.
+inline int trackEachScan(int argc, char** argv, const pcl_floam::OdometryComponents& components)
+{
+  pcl_floam::OdometryPipeline odometry;
+  odometry.setComponents(components);
+  return trackEachScan(argc, argv, [&](const auto& scan, const auto& stamp) { return odometry.track(scan, stamp); });
 }

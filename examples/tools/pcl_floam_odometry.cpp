@@ -115,7 +115,7 @@ struct Preparation {
     if (!options.grid.empty()) {
       check(gridSettings(options));
     }
-    saver = ScanSaver(options.save_scans, odometry.sensorPose());
+    saver = ScanSaver(options.save_scans, odometry.getSensorPose());
     writer = std::make_unique<ResultWriter>(options.output);
   }
 

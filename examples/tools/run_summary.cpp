@@ -119,7 +119,7 @@ Json toJson(const RunSummary& summary)
     json["accuracy"]["vertical_correction_deg"] = summary.odometry.parameters().vertical_correction;
   }
   json["settings"] = toJson(summary.odometry.parameters());
-  json["sensor_pose"] = matrixOf(summary.odometry.sensorPose());
+  json["sensor_pose"] = matrixOf(summary.odometry.getSensorPose());
   return json;
 }
 

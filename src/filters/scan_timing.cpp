@@ -13,6 +13,11 @@
 
 namespace pcl_floam {
 
+ScanTimingSource reversed(ScanTimingSource source)
+{
+  return source == ScanTimingSource::clockwise ? ScanTimingSource::counterclockwise : ScanTimingSource::clockwise;
+}
+
 const char* toString(ScanTimingSource source)
 {
   switch (source) {

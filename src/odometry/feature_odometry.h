@@ -145,14 +145,7 @@ struct FeatureOdometry : OdometryRun {
   }
 
   // Motion Estimation (Eq. 2)
-  [[nodiscard]] MotionEstimate predictMotion() const { return predictMotion(periods); }
-
-  [[nodiscard]] MotionEstimate predictMotion(double over) const
-  {
-    MotionEstimate predicted = motion;
-    predicted.predict(over, hint.sinceLast(), periods_error);
-    return predicted;
-  }
+  [[nodiscard]] MotionEstimate predictMotion() const { return predictedFrom(motion, periods); }
 
   /// The first two scans share one unknown motion: the map begins anew with the first, undistorted with what is known
   /// of it by now, and the second is registered with that, looking less and less far.
@@ -270,7 +263,7 @@ struct FeatureOdometry : OdometryRun {
       report.covariance = covarianceAtInstant(found, sweep_fraction);
     }
     if (state == TrackingState::predicted) {
-      const MotionEstimate predicted = predictMotion(periodsKnown());
+      const MotionEstimate predicted = predictedFrom(motion, periodsKnown());
       report.world_T_sensor = SweepPose{predicted.pose(), sweep_fraction * predicted.velocity()}.at(instant);
       report.covariance = covarianceAtInstant(predicted, sweep_fraction);
     } else if (state == TrackingState::doubtful) {

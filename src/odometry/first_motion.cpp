@@ -127,8 +127,7 @@ double FirstMotionSearch::same() const
 /// Those whose evidence is not hopelessly less than the best, that first, no two of them the same.
 std::vector<Vector6> FirstMotionSearch::likelyMotions() const
 {
-  constexpr double kHopeless =
-      0.065;  // evidence a point: among cars that keep pace the road may be nearly as far behind
+  constexpr double kHopeless = 0.065;  // evidence a point: among cars that keep pace the road is nearly as far behind
   std::vector<Found> best_first = found_;
   std::stable_sort(best_first.begin(), best_first.end(),
                    [](const Found& a, const Found& b) { return a.evidence > b.evidence; });

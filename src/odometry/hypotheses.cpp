@@ -238,7 +238,7 @@ void Hypotheses::keepOneOfEachDirection(Preference preference)
   all_ = std::move(kept);
 }
 
-Matrix6 Hypotheses::spread() const
+Matrix6 Hypotheses::rivalCovariance() const
 {
   Matrix6 squares = Matrix6::Zero();
   const SE3& first = front().track.pose().middle;

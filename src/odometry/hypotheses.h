@@ -95,7 +95,7 @@ public:
   [[nodiscard]] bool wereSeveral() const { return numbered_ > 1; }
 
   /// Mean square of what the first one's pose is off if another one is right, each as likely; zero without others.
-  [[nodiscard]] Matrix6 spread() const;
+  [[nodiscard]] Matrix6 rivalCovariance() const;
 
   /// Whether the best one's direction of time has others.
   [[nodiscard]] bool hasRivalsInDirection() const;

@@ -152,7 +152,7 @@ const OdometryReport& OdometryPipeline::report() const
   return impl_->frame.report(impl_->of().report);
 }
 
-SE3 OdometryPipeline::pose() const
+SE3 OdometryPipeline::getPose() const
 {
   return report().world_T_sensor;
 }
@@ -181,7 +181,7 @@ void OdometryPipeline::reset(const SE3& world_T_sensor)
   if (!world_T_sensor.isFinite()) {
     throw std::invalid_argument("the pose to begin with is not finite");
   }
-  impl_ = impl_->again(components(), impl_->frame, world_T_sensor);
+  impl_ = impl_->again(getComponents(), impl_->frame, world_T_sensor);
 }
 
 void OdometryPipeline::setComponents(const OdometryComponents& components)
@@ -206,15 +206,15 @@ void OdometryPipeline::setSensorPose(const SE3& frame_T_sensor)
   if (any && rotationAngle(frame_T_sensor.rotation) > 0.0) {
     throw std::invalid_argument("locked degrees of freedom are the sensor's: its axes must be those of the frame");
   }
-  impl_ = impl_->again(components(), SensorFrame(frame_T_sensor), SE3());
+  impl_ = impl_->again(getComponents(), SensorFrame(frame_T_sensor), SE3());
 }
 
-const SE3& OdometryPipeline::sensorPose() const
+const SE3& OdometryPipeline::getSensorPose() const
 {
   return impl_->frame.pose();
 }
 
-const OdometryComponents& OdometryPipeline::components() const
+const OdometryComponents& OdometryPipeline::getComponents() const
 {
   return impl_->of().components;
 }

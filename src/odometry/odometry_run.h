@@ -129,6 +129,13 @@ struct OdometryRun {
     }
   }
 
+  /// Motion Estimation (Eq. 2).
+  [[nodiscard]] MotionEstimate predictedFrom(MotionEstimate motion, double over) const
+  {
+    motion.predict(over, hint.sinceLast(), periods_error);
+    return motion;
+  }
+
   /// Periods since the last scan that a velocity holds for: it is not known for ever.
   [[nodiscard]] double periodsKnown() const { return std::min(periods, kLongestKnown); }
 };

@@ -21,7 +21,8 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   problem.prior.periods_between = 0.0;
   problem.prior.pose_counts = false;
   problem.reach = reachOf(doubt);
-  problem.wants_evidence = problem.is_rival = true;
+  problem.evidence = Evidence::total;
+  problem.is_rival = true;
   return registerSurfaces(problem);
 }
 
@@ -57,7 +58,7 @@ Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt
 std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector<SE3>& guesses, const Doubt& doubt)
 {
   SurfaceProblem weighed = expected;
-  weighed.wants_evidence = true;
+  weighed.evidence = Evidence::total;
   SurfaceRegistration best = registerSurfaces(weighed);
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {

@@ -78,11 +78,10 @@ struct SurfaceOdometry : OdometryRun {
     constexpr std::size_t kFewest = 20;
     const ScanReturns returns = scan.returnsOf(cloud, parameters);
     has_enough_points = returns.areAtLeast(kFewest);
+    sweep.dense.clear();  // the last scan's
+    sweep.sample.clear();
     if (has_enough_points) {
       tracker.sample(returns, sweep);
-    } else {
-      sweep.dense.clear();  // the last scan's
-      sweep.sample.clear();
     }
   }
 
@@ -96,6 +95,13 @@ struct SurfaceOdometry : OdometryRun {
     return toldState();
   }
 
+  bool beginMap(const FeatureSet& features)
+  {
+    first_scans.begin(features);
+    map_building.clear();
+    return map_building.add(features, {initial_pose}, parameters);
+  }
+
   /// The first scan: its motion is found with the second.
   void start()
   {
@@ -105,9 +111,7 @@ struct SurfaceOdometry : OdometryRun {
     sweep.periods = 1.0;
     registerSweep();
     reachScan();
-    first_scans.begin(scan.features);
-    map_building.clear();
-    report.keyframe = map_building.add(scan.features, {initial_pose}, parameters);
+    report.keyframe = beginMap(scan.features);
     report.milliseconds.map += watch.lap();
     finish(TrackingState::initialized);
   }
@@ -126,8 +130,7 @@ struct SurfaceOdometry : OdometryRun {
     if (!report.registration.hasConverged()) {
       return;
     }
-    noteTold(outcome.registration.told,
-             was_tracking ? sweep.hint : std::nullopt);  // the first motion is only sought by it
+    noteTold(outcome.registration.told, was_tracking ? sweep.hint : std::nullopt);  // the first is only sought by it
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
       first_scans.add(scan.features);
@@ -170,8 +173,7 @@ struct SurfaceOdometry : OdometryRun {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
     } else if (direction() < 0.0 && report.timing_source != ScanTimingSource::none) {  // those of a scan, by azimuth
-      report.timing_source = report.timing_source == ScanTimingSource::clockwise ? ScanTimingSource::counterclockwise
-                                                                                 : ScanTimingSource::clockwise;
+      report.timing_source = reversed(report.timing_source);
       report.registration.sweep_twist = -report.registration.sweep_twist;
     }
   }
@@ -238,9 +240,9 @@ struct SurfaceOdometry : OdometryRun {
   void noteCovariance()
   {
     if (report.state == TrackingState::predicted && tracker.isTracking()) {
-      report.covariance = turned(covarianceNow(predicted()) + tracker.spread(), world_T_track);
+      report.covariance = turned(covarianceNow(predicted()) + tracker.rivalCovariance(), world_T_track);
     } else if (report.state == TrackingState::tracked || report.state == TrackingState::doubtful) {
-      Matrix6 besides = tracker.spread();
+      Matrix6 besides = tracker.rivalCovariance();
       besides.topLeftCorner<3, 3>() += told_motion.open();
       report.covariance = turned(covarianceNow(tracker.track().motion()) + besides, world_T_track);
     }
@@ -260,12 +262,7 @@ struct SurfaceOdometry : OdometryRun {
     return {motion.pose(), direction() * sweep_fraction * motion.velocity()};
   }
 
-  [[nodiscard]] MotionEstimate predicted() const
-  {
-    MotionEstimate motion = tracker.track().motion();
-    motion.predict(periodsKnown(), hint.sinceLast(), periods_error);
-    return motion;
-  }
+  [[nodiscard]] MotionEstimate predicted() const { return predictedFrom(tracker.track().motion(), periodsKnown()); }
 
   void setPose(const SE3& world_T_sensor)
   {
@@ -275,11 +272,8 @@ struct SurfaceOdometry : OdometryRun {
       initial_pose = world_T_sensor;
       tracker.place(world_T_sensor);
       if (first_scans.isOpen()) {
-        const FeatureSet features = first_scans.features().front();
-        first_scans.begin(features);
+        beginMap(FeatureSet(first_scans.features().front()));
         first_scans.give(initial_pose);
-        map_building.clear();
-        map_building.add(features, {initial_pose}, parameters);
       }
       return;
     }

@@ -78,17 +78,16 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
 {
   constexpr double kLook = 3.0;  // standard deviations, while it is not decided how the sensor began to move
   SurfaceProblem problem = problemFor(sweep);
-  problem.wants_evidence = rivals != Rivals::none;
-  problem.wants_point_evidence = rivals == Rivals::motions;
+  problem.evidence = rivals == Rivals::none ? Evidence::none : Evidence::total;
   if (rivals == Rivals::motions) {
     problem.is_rival = true;
+    problem.evidence = Evidence::of_points;
     problem.reach *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);
   if ((rivals != Rivals::motions || isLong(sweep)) && found.explained() < kBorneOut && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
-    again.wants_evidence = problem.wants_evidence;
-    again.wants_point_evidence = problem.wants_point_evidence;
+    again.evidence = problem.evidence;
     found = registerSurfaces(again);
   }
   return unlessByChance(std::move(found));

@@ -52,8 +52,9 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.reach = reachOf({far, kTurnPerMetre * far});
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
-    problem.wants_evidence = round + 1 == look.rounds;
-    problem.max_iterations = problem.wants_evidence ? problem.max_iterations : kOfARound;
+    const bool is_last = round + 1 == look.rounds;
+    problem.evidence = is_last ? Evidence::total : Evidence::none;
+    problem.max_iterations = is_last ? problem.max_iterations : kOfARound;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {
       return found;

@@ -57,7 +57,7 @@ public:
   }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
   /// What its pose may be off, as another of the tracks may be the right one.
-  [[nodiscard]] Matrix6 spread() const { return hypotheses_.spread(); }
+  [[nodiscard]] Matrix6 rivalCovariance() const { return hypotheses_.rivalCovariance(); }
   /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
   /// several tracks.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }

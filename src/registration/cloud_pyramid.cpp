@@ -151,27 +151,46 @@ std::vector<Eigen::Vector3f> someOf(const std::vector<Eigen::Vector3f>& points)
   return some;
 }
 
+/// The cloud in voxels as small as its sampling allows, each level with twice the size; itself if none does.
+template <typename Allows>
+CloudLevel thinnedUntil(CloudLevel finest, const std::vector<Eigen::Vector3f>& places, double spacing,
+                        std::size_t fewest, const Allows& allows)
+{
+  for (double voxel = kFirstVoxel * spacing; voxel > 0.0; voxel *= 2.0) {
+    CloudLevel thinned = bareThinned(finest, voxel);
+    if (thinned.tree.size() < fewest) {
+      break;
+    }
+    if (allows(findSampling(thinned.tree, places))) {
+      return thinned;
+    }
+  }
+  return finest;
+}
+
 /// Lines that are gone from a cloud once it is thinned are the sensor's scan lines, and the points of one of these lie
 /// on that laser's cone, whatever it hit. Then the thinned cloud takes the place of the one given.
 CloudLevel withoutScanLines(CloudLevel all)
 {
   const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
   const Sampling sampling = findSampling(all.tree, places);
-  if (!sampling.in_lines) {
-    return all;
-  }
-  double voxel = kFirstVoxel * sampling.spacing;
-  while (voxel > 0.0) {
-    CloudLevel thinned = bareThinned(all, voxel);
-    if (thinned.tree.size() < kCoarsestPoints) {
-      break;
-    }
-    if (!findSampling(thinned.tree, places).in_lines) {
-      return thinned;
-    }
-    voxel *= 2.0;
-  }
-  return all;
+  return sampling.in_lines ? thinnedUntil(std::move(all), places, sampling.spacing, kCoarsestPoints,
+                                          [](const Sampling& s) { return !s.in_lines; })
+                           : all;
+}
+
+/// What is a surface once it is thinned was hidden by noise: its neighbourhoods are as thick as wide, so that each
+/// point would hold the pose in all directions.
+CloudLevel withoutNoise(CloudLevel all)
+{
+  constexpr double kMostShapeless = 1.0 / 3.0;  // of all places: scattered scenes have as many, whatever the voxels
+  constexpr double kClearlyFewer = 2.0 / 3.0;   // times as many
+  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
+  const Sampling sampling = findSampling(all.tree, places);
+  const double most = std::min(kMostShapeless, kClearlyFewer * sampling.shapeless);
+  return sampling.shapeless > kMostShapeless ? thinnedUntil(std::move(all), places, sampling.spacing, kFewPoints,
+                                                            [most](const Sampling& s) { return s.shapeless <= most; })
+                                             : all;
 }
 
 }  // namespace
@@ -187,7 +206,7 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
   const Points points = takePoints(cloud, selectable);
   CloudLevel all = bareLevel(points.position, points.number);
   all.rounding = kFloatRounding * points.largest;
-  full_ = withShapes(withoutScanLines(std::move(all)), threads);
+  full_ = withShapes(withoutNoise(withoutScanLines(std::move(all))), threads);
 }
 
 std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,

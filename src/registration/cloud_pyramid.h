@@ -16,6 +16,9 @@
 
 namespace pcl_floam {
 
+/// Few points are key points rather than samples of surfaces: each tells a place, not only a surface.
+inline constexpr std::size_t kFewPoints = 1000;
+
 /// A cloud at one resolution: its points, or the means of those within each voxel.
 struct CloudLevel {
   PointTree tree;                  ///< relative to the pyramid's origin
@@ -48,7 +51,8 @@ public:
   /// Root mean square distance of the points from the centroid, m.
   [[nodiscard]] double extent() const { return extent_; }
 
-  /// All points, or, of a cloud in which the sensor's scan lines show, means that are even enough not to show them.
+  /// All points, or, of a cloud in which the sensor's scan lines or noise show in place of surfaces, means that are
+  /// even enough not to show them.
   [[nodiscard]] const CloudLevel& full() const { return full_; }
 
   /// Ever fewer points, in voxels twice as large from level to level: made when they are first asked for, by any

@@ -2,6 +2,7 @@
 
 #include "common/covariance.h"
 #include "registration/cloud_alignment.h"
+#include "registration/locked_motions.h"
 #include "registration/start_search.h"
 #include "registration/weak_directions.h"
 
@@ -25,8 +26,7 @@ constexpr int kRoughIterations = 100;
 /// Directions that hold less well than this many times a slide along a plane are reported as weak.
 constexpr double kWeak = 5.0;
 
-/// Few points are key points rather than samples of surfaces: each tells a place, not only a surface.
-constexpr std::size_t kFewPoints = 1000;
+/// See \ref kFewPoints.
 constexpr double kAlongOfFew = 0.05;
 
 /// Whoever asks for fewer iterations than this wants to see them one by one.
@@ -104,14 +104,8 @@ private:
     const Matrix6 to_centroid = leverOf(-alignment_.arm());
     report_.information = propagated(to_centroid.transpose(), sums.information);
     const Matrix6 to_origin = leverOf(alignment_.arm());
-    report_.covariance =
-        propagated(to_origin, analysis.covariance(kMatchesPerIndependentOne * sums.residualVariance(), shares));
-    for (int i = 0; i < 6; ++i) {
-      if (run_.locked[static_cast<std::size_t>(i)]) {  // but for rounding
-        report_.covariance.row(i).setZero();
-        report_.covariance.col(i).setZero();
-      }
-    }
+    const Matrix6 covariance = analysis.covariance(kMatchesPerIndependentOne * sums.residualVariance(), shares);
+    report_.covariance = covarianceWithLocked(propagated(to_origin, covariance), run_.locked);
     return report_;
   }
 

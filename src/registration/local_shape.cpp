@@ -39,6 +39,16 @@ PointMoments momentsAround(const PointTree& tree, const Eigen::Vector3f& point, 
   return moments;
 }
 
+bool isLine(const PrincipalAxes& axes)
+{
+  return axes.variance[1] < kLineRatio * axes.variance[2];
+}
+
+bool isPlane(const PrincipalAxes& axes)
+{
+  return axes.variance[0] < kPlaneRatio * axes.variance[1];
+}
+
 LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const NearestPoints& neighbors)
 {
   LocalShape shape;
@@ -50,10 +60,10 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
   if (!(axes.variance[2] > 0.0)) {
     return shape;
   }
-  if (axes.variance[1] < kLineRatio * axes.variance[2]) {
+  if (isLine(axes)) {
     shape.kind = ShapeKind::line;
     shape.axis = axes.direction.col(2).cast<float>();
-  } else if (axes.variance[0] < kPlaneRatio * axes.variance[1]) {
+  } else if (isPlane(axes)) {
     shape.kind = ShapeKind::plane;
     shape.axis = axes.direction.col(0).cast<float>();
   }
@@ -92,15 +102,18 @@ Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>&
   }
   std::vector<float> radii;
   std::size_t narrow = 0;
+  std::size_t shapeless = 0;
   NearestPoints neighbors;
   for (const Eigen::Vector3f& place : places) {
     tree.nearest(place, kNeighbors, neighbors);
     const PrincipalAxes axes = momentsAround(tree, place, neighbors).axes();
     radii.push_back(radiusOf(neighbors));
     narrow += axes.variance[1] < kNarrow * axes.variance[2] ? 1 : 0;
+    shapeless += isLine(axes) || isPlane(axes) ? 0 : 1;
   }
   sampling.spacing = spacingFrom(radii);
   sampling.in_lines = static_cast<double>(narrow) > kNarrowPart * static_cast<double>(places.size());
+  sampling.shapeless = static_cast<double>(shapeless) / static_cast<double>(places.size());
   return sampling;
 }
 

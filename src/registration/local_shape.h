@@ -43,8 +43,9 @@ struct LocalShapes {
 
 /// How a tree's points lie around some places.
 struct Sampling {
-  double spacing = 0.0;   ///< as of LocalShapes
-  bool in_lines = false;  ///< rather than over surfaces
+  double spacing = 0.0;    ///< as of LocalShapes
+  bool in_lines = false;   ///< rather than over surfaces
+  double shapeless = 0.0;  ///< part of the neighbourhoods that are neither lines nor planes
 };
 
 [[nodiscard]] Sampling findSampling(const PointTree& tree, const std::vector<Eigen::Vector3f>& places);

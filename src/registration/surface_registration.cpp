@@ -1,5 +1,6 @@
 #include "registration/surface_registration.h"
 
+#include "registration/locked_motions.h"
 #include "registration/net_information.h"
 #include "registration/surface_residuals.h"
 
@@ -44,7 +45,7 @@ public:
   {
     SurfaceRegistration result;
     conclude(result, iterate(result.report));
-    if (problem_.wants_evidence && result.report.hasConverged()) {
+    if (problem_.evidence != Evidence::none && result.report.hasConverged()) {
       weighEvidence(result);
     }
     return result;
@@ -57,7 +58,7 @@ private:
   void weighEvidence(SurfaceRegistration& result)
   {
     weighs_evidence_ = true;
-    if (problem_.wants_point_evidence) {
+    if (problem_.evidence == Evidence::of_points) {
       static_cast<void>(accumulate(0.0, 1));
       result.point_evidence = room_.evidence;
     }
@@ -142,7 +143,7 @@ private:
     }
     const Vector6 units = commonUnits(all);
     for (int i = 0; i < 6; ++i) {
-      told(i, i) += isLocked(i) ? all.weight / (units[i] * units[i]) : 0.0;
+      told(i, i) += isLocked(problem_.locked, i) ? all.weight / (units[i] * units[i]) : 0.0;
     }
     return told;
   }
@@ -152,43 +153,15 @@ private:
   {
     Matrix6 known = information;
     known.diagonal().array() += kNothingKnown;
-    holdLocked(known);
-    return withoutLocked(inverseOf(known));
+    return covarianceWithLocked(inverseOf(informationWithLocked(known, problem_.locked)), problem_.locked);
   }
 
   /// Symmetric to the bit: it is the next sweep's prior, and what rounding left would grow from sweep to sweep.
   [[nodiscard]] Matrix12 posterior() const
   {
     const Matrix12 covariance = inverseOf(equationsOf(known_).information);
-    return withoutLocked(Matrix12(0.5 * (covariance + covariance.transpose())));
+    return covarianceWithLocked(Matrix12(0.5 * (covariance + covariance.transpose())), problem_.locked);
   }
-
-  /// As if they were known.
-  template <typename Information>
-  void holdLocked(Information& information) const
-  {
-    for (Eigen::Index i = 0; i < information.rows(); ++i) {
-      if (isLocked(static_cast<int>(i))) {
-        information.row(i).setZero();
-        information.col(i).setZero();
-        information(i, i) = 1.0;
-      }
-    }
-  }
-
-  template <typename Covariance>
-  [[nodiscard]] Covariance withoutLocked(Covariance covariance) const
-  {
-    for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
-      if (isLocked(static_cast<int>(i))) {
-        covariance.row(i).setZero();
-        covariance.col(i).setZero();
-      }
-    }
-    return covariance;
-  }
-
-  [[nodiscard]] bool isLocked(int i) const { return problem_.locked[static_cast<std::size_t>(i % 6)]; }
 
   /// What points and edges tell, each beyond their noise: noise of the one does not make the other less. Along a motion
   /// of which they tell next to nothing the pose is left to the prior, and so it is not corrected by what is seen of
@@ -261,9 +234,9 @@ private:
     const PoseEquations besides = this->besides();
     equations.information.topLeftCorner<6, 6>() += besides.information;
     equations.gradient.head<6>() += besides.gradient;
-    holdLocked(equations.information);
+    equations.information = informationWithLocked(equations.information, problem_.locked);
     for (int i = 0; i < 12; ++i) {
-      equations.gradient[i] = isLocked(i) ? 0.0 : equations.gradient[i];
+      equations.gradient[i] = isLocked(problem_.locked, i) ? 0.0 : equations.gradient[i];
     }
     return equations;
   }

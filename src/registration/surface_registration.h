@@ -29,6 +29,13 @@ enum class SweepPlacement : std::uint8_t {
   joint     ///< and pose and velocity are what explains them best
 };
 
+/// How well the target explains the sweep where the pose has it: what a result tells of that.
+enum class Evidence : std::uint8_t {
+  none,
+  total,     ///< of all residuals
+  of_points  ///< and of each of the scan's points
+};
+
 /// What is to be registered, and what is known before.
 struct SurfaceProblem {
   SurfaceTerm scan;   ///< points taken by space
@@ -38,8 +45,7 @@ struct SurfaceProblem {
   Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess: the first iteration looks so far
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
-  bool wants_evidence = false;   ///< else the result has none
-  bool wants_point_evidence = false;
+  Evidence evidence = Evidence::none;
   /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
   /// only what they do not tell is left to the prior.
   bool is_rival = false;
@@ -55,7 +61,7 @@ struct SurfaceRegistration {
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
   /// anywhere within a metre.
   double evidence = 0.0;
-  /// Of the scan's points, if that was wanted, without what a laser's own curve tells.
+  /// Of the scan's points (\ref Evidence::of_points), without what a laser's own curve tells.
   std::vector<float> point_evidence;
   Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
   std::size_t points = 0;          ///< that took part

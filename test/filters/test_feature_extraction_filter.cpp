@@ -55,6 +55,17 @@ TEST(FeatureExtractionFilter, NegativeIsTheComplementAmongFinitePoints)
   }
 }
 
+TEST(FeatureExtractionFilter, ScanLinesComeFromWhereItIsTold)
+{
+  for (const ScanLineSource source : {ScanLineSource::ring_field, ScanLineSource::elevation_clusters}) {
+    Extraction extraction;
+    extraction.setScanLineSource(source);
+    EXPECT_EQ(extraction.getScanLineSource(), source);
+    EXPECT_FALSE(filtered(extraction, scanOf(Room()), FeatureKind::edge).empty());
+    EXPECT_EQ(extraction.getScanLines().source, source);
+  }
+}
+
 TEST(FeatureExtractionFilter, SelectsWhatExtractGives)
 {
   const auto cloud = scanOf(Room());

@@ -43,8 +43,8 @@ TEST(Odometry, RecoversAnAcceleratedMotion)
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
       odometry.track(sweep(acceleratedPath, k));
-      EXPECT_LT(error(odometry.pose(), acceleratedPath, k), limit) << toString(mode) << ", scan " << k;
-      EXPECT_LT(angleError(odometry.pose(), acceleratedPath, k), 0.006) << toString(mode) << ", scan " << k;
+      EXPECT_LT(error(odometry.getPose(), acceleratedPath, k), limit) << toString(mode) << ", scan " << k;
+      EXPECT_LT(angleError(odometry.getPose(), acceleratedPath, k), 0.006) << toString(mode) << ", scan " << k;
     }
   }
 }
@@ -124,7 +124,7 @@ TEST(Odometry, CompensationIsWorthIt)
     for (int k = 0; k < kScans; ++k) {
       odometry.track(sweep(steadyPath, k));
       double& largest = worst[mode == CompensationMode::none ? 0 : 1];
-      largest = std::max(largest, error(odometry.pose(), steadyPath, k));
+      largest = std::max(largest, error(odometry.getPose(), steadyPath, k));
     }
   }
   EXPECT_GT(worst[0], 2.0 * worst[1]);
@@ -138,12 +138,12 @@ TEST(Odometry, PosesAreThoseOfTheNamedInstant)
     Odometry<PointXYZIRT> odometry(parameters);
     for (int k = 0; k < kScans; ++k) {
       odometry.track(sweep(acceleratedPath, k));
-      EXPECT_LT(error(odometry.pose(), acceleratedPath, k, fractionOf(instant)), 0.05)
+      EXPECT_LT(error(odometry.getPose(), acceleratedPath, k, fractionOf(instant)), 0.05)
           << toString(instant) << ", scan " << k;
       EXPECT_NEAR(odometry.report().since_stamp, 0.1 * fractionOf(instant), 1e-3);
     }
     // The path is fast enough to tell the instants apart.
-    EXPECT_GT(error(odometry.pose(), acceleratedPath, kScans - 1, 1.0 - fractionOf(instant)),
+    EXPECT_GT(error(odometry.getPose(), acceleratedPath, kScans - 1, 1.0 - fractionOf(instant)),
               instant == PoseInstant::middle ? -1.0 : 0.2);
   }
 }
@@ -174,11 +174,11 @@ TEST(Odometry, ResetStartsAnewAtAPose)
   }
   const SE3 initial = exp((Vector6() << 100.0, -50.0, 2.0, 0.1, 0.2, 1.0).finished());
   odometry.reset(initial);
-  EXPECT_TRUE(sameBits(odometry.pose(), initial));
+  EXPECT_TRUE(sameBits(odometry.getPose(), initial));
   EXPECT_TRUE(odometry.map().empty());
   for (int k = 0; k < 5; ++k) {
     EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
-    EXPECT_LT(error(initial.inverse() * odometry.pose(), steadyPath, k), 0.03);
+    EXPECT_LT(error(initial.inverse() * odometry.getPose(), steadyPath, k), 0.03);
   }
 }
 
@@ -197,9 +197,9 @@ TEST(Odometry, IsAsPreciseFarFromTheOrigin)
     const Cloud scan = sweep(acceleratedPath, k);
     near.track(scan);
     ASSERT_TRUE(far.track(scan).state == TrackingState::tracked || k == 0) << "scan " << k;
-    const Eigen::Vector3d difference = far.pose().translation - far_away.translation - near.pose().translation;
+    const Eigen::Vector3d difference = far.getPose().translation - far_away.translation - near.getPose().translation;
     EXPECT_LT(difference.norm(), 1e-5) << "scan " << k;
-    EXPECT_LT(rotationAngle(near.pose().rotation.transpose() * far.pose().rotation), 1e-6) << "scan " << k;
+    EXPECT_LT(rotationAngle(near.getPose().rotation.transpose() * far.getPose().rotation), 1e-6) << "scan " << k;
   }
 }
 
@@ -210,8 +210,8 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
   for (int k = 0; k < 5; ++k) {
     odometry.track(scan);
     EXPECT_EQ(odometry.report().engine, defaults().engine);
-    EXPECT_LT(odometry.pose().translation.norm(), 0.01);
-    EXPECT_LT(rotationAngle(odometry.pose().rotation), 1e-3);
+    EXPECT_LT(odometry.getPose().translation.norm(), 0.01);
+    EXPECT_LT(rotationAngle(odometry.getPose().rotation), 1e-3);
     EXPECT_EQ(odometry.report().keyframe, k == 0);
   }
 }

@@ -113,9 +113,9 @@ TEST(OdometryComponents, StayOverAResetAndAreCopied)
   Odometry<PointXYZIRT> odometry(defaults());
   odometry.setComponents(withFactor(std::make_shared<Height>(0.0, 1.0)));
   odometry.reset();
-  EXPECT_EQ(odometry.components().factors.size(), 1U);
+  EXPECT_EQ(odometry.getComponents().factors.size(), 1U);
   const Odometry<PointXYZIRT> copy = odometry;
-  EXPECT_EQ(copy.components().factors, odometry.components().factors);
+  EXPECT_EQ(copy.getComponents().factors, odometry.getComponents().factors);
 }
 
 TEST(OdometryComponents, WhatTheEngineHasNoUseForIsRefused)

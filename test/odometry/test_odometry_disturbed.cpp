@@ -61,7 +61,7 @@ TEST(OdometryDisturbed, KeepsGoingOverMissingScans)
     const bool missing = k == 6 || k == 7 || k == 12;
     const OdometryReport& report = missing ? odometry.trackMissing() : odometry.track(sweep(steadyPath, k));
     EXPECT_EQ(report.state == TrackingState::predicted, missing) << "scan " << k;
-    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+    EXPECT_LT(error(odometry.getPose(), steadyPath, k), 0.05) << "scan " << k;
   }
 }
 
@@ -72,7 +72,7 @@ TEST(OdometryDisturbed, StampsTellOfAGap)
   for (int k = 0; k < kScans; ++k) {
     if (k < 8 || k > 10) {
       EXPECT_NE(odometry.track(sweep(steadyPath, k), 100.0 + 0.1 * k).state, TrackingState::predicted);
-      EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+      EXPECT_LT(error(odometry.getPose(), steadyPath, k), 0.05) << "scan " << k;
     }
   }
 }
@@ -134,7 +134,7 @@ TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
     }
     const Cloud scan = sweep(acceleratedPath, k);
     EXPECT_NE(odometry.track(scan, stamp).state, TrackingState::predicted);
-    EXPECT_LT(error(odometry.pose(), acceleratedPath, k), 0.05) << "scan " << k;
+    EXPECT_LT(error(odometry.getPose(), acceleratedPath, k), 0.05) << "scan " << k;
   }
 }
 
@@ -149,11 +149,11 @@ TEST(OdometryDisturbed, StartsWithTheFirstUsableScan)
   }
   EXPECT_EQ(odometry.track(blank).state, TrackingState::not_started);
   EXPECT_FALSE(odometry.report().reason.empty());
-  EXPECT_TRUE(sameBits(odometry.pose(), SE3()));
+  EXPECT_TRUE(sameBits(odometry.getPose(), SE3()));
   EXPECT_TRUE(odometry.map().empty());
   for (int k = 0; k < 4; ++k) {
     EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
-    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.03);
+    EXPECT_LT(error(odometry.getPose(), steadyPath, k), 0.03);
   }
 }
 
@@ -164,7 +164,7 @@ TEST(OdometryDisturbed, ASecondBlindScanDoesNotHarmTheStart)
   EXPECT_EQ(odometry.trackMissing().state, TrackingState::predicted);
   for (int k = 2; k < 10; ++k) {
     EXPECT_EQ(odometry.track(sweep(steadyPath, k)).state, TrackingState::tracked);
-    EXPECT_LT(error(odometry.pose(), steadyPath, k), 0.05) << "scan " << k;
+    EXPECT_LT(error(odometry.getPose(), steadyPath, k), 0.05) << "scan " << k;
   }
 }
 

@@ -121,7 +121,7 @@ TEST(OdometryIsTold, APoseThatIsSetKeepsTheMap)
   odometry.setPose(elsewhereInMap(0) * exp((Vector6() << 0.4, -0.3, 0.1, 0.02, -0.02, 0.08).finished()));
   for (int k = 0; k < 6; ++k) {
     EXPECT_EQ(odometry.track(sweep(elsewhere, k)).state, TrackingState::tracked);
-    const SE3 off = elsewhereInMap(k).inverse() * odometry.pose();
+    const SE3 off = elsewhereInMap(k).inverse() * odometry.getPose();
     EXPECT_LT(off.translation.norm(), k < 2 ? 0.15 : 0.05) << "scan " << k;
   }
   EXPECT_GE(odometry.map().size(FeatureKind::plane), points);
@@ -139,7 +139,7 @@ TEST(OdometryIsTold, APoseHoldsOverScansThatTellNothing)
   odometry.setPose(elsewhereInMap(0));
   odometry.setMotionHint(wheelsOf(steadyPath, kScans));  // of a way that counts no more
   EXPECT_EQ(odometry.trackMissing().state, TrackingState::predicted);
-  EXPECT_LT((odometry.pose().translation - elsewhereInMap(0).translation).norm(), 0.01);
+  EXPECT_LT((odometry.getPose().translation - elsewhereInMap(0).translation).norm(), 0.01);
   Cloud nowhere = sweep(elsewhere, 1);
   for (PointXYZIRT& point : nowhere) {
     point.x += 1000.0F;
@@ -147,7 +147,7 @@ TEST(OdometryIsTold, APoseHoldsOverScansThatTellNothing)
   EXPECT_EQ(odometry.track(nowhere).state, TrackingState::predicted);
   for (int k = 1; k < 6; ++k) {
     EXPECT_EQ(odometry.track(sweep(elsewhere, k)).state, TrackingState::tracked) << k;
-    EXPECT_LT((odometry.pose().translation - elsewhereInMap(k).translation).norm(), k < 3 ? 0.15 : 0.05) << k;
+    EXPECT_LT((odometry.getPose().translation - elsewhereInMap(k).translation).norm(), k < 3 ? 0.15 : 0.05) << k;
   }
 }
 
@@ -164,7 +164,7 @@ TEST(OdometryIsTold, APoseCanBeSetAtAnyTime)
       const OdometryReport& report = odometry.track(sweep(steadyPath, k));
       EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked);
       EXPECT_TRUE(report.reason.empty()) << report.reason;
-      EXPECT_TRUE(k < scans || error(offset.inverse() * odometry.pose(), steadyPath, k) < 0.05) << scans << ' ' << k;
+      EXPECT_TRUE(k < scans || error(offset.inverse() * odometry.getPose(), steadyPath, k) < 0.05) << scans << ' ' << k;
     }
   }
   for (const int scans : {3, 8, 12, 15}) {  // it is where the map has the sensor
@@ -177,7 +177,7 @@ TEST(OdometryIsTold, APoseCanBeSetAtAnyTime)
       const OdometryReport& report = odometry.track(sweep(elsewhere, k));
       EXPECT_EQ(report.state, TrackingState::tracked);
       EXPECT_TRUE(report.corrected_poses.empty()) << scans << ' ' << k;
-      EXPECT_LT((odometry.pose().translation - elsewhereInMap(k).translation).norm(), k < 2 ? 0.15 : 0.05)
+      EXPECT_LT((odometry.getPose().translation - elsewhereInMap(k).translation).norm(), k < 2 ? 0.15 : 0.05)
           << scans << ' ' << k;
     }
   }

@@ -74,7 +74,7 @@ TEST(Odometry, ThreadsMayTakeTurnsAndAMoveKeepsTheState)
     here.track(scan);
     std::thread([&moving, &scan] { moving.track(scan); }).join();
     Odometry<PointXYZIRT> elsewhere(std::move(moving));
-    EXPECT_TRUE(sameBits(elsewhere.pose(), here.pose())) << "scan " << k;
+    EXPECT_TRUE(sameBits(elsewhere.getPose(), here.getPose())) << "scan " << k;
     moving = std::move(elsewhere);
   }
   EXPECT_EQ(moving.map().size(FeatureKind::plane), here.map().size(FeatureKind::plane));
@@ -96,8 +96,8 @@ TEST(Odometry, ACopyContinuesIdentically)
     copy.track(sweep(acceleratedPath, k));
     assigned.track(sweep(acceleratedPath, k));
   }
-  EXPECT_TRUE(sameBits(odometry.pose(), copy.pose()));
-  EXPECT_TRUE(sameBits(odometry.pose(), assigned.pose()));
+  EXPECT_TRUE(sameBits(odometry.getPose(), copy.getPose()));
+  EXPECT_TRUE(sameBits(odometry.getPose(), assigned.getPose()));
 }
 
 }  // namespace

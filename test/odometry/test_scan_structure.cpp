@@ -32,13 +32,13 @@ TEST(Odometry, NeedsNoScanLines)
     const OdometryReport& report = odometry.track(scanAt(k));
     EXPECT_EQ(report.scan_lines, 0U);
     EXPECT_EQ(report.state, k == 0 ? TrackingState::initialized : TrackingState::tracked) << report.reason;
-    EXPECT_LT((odometry.pose().translation - turn * steadyPath(k).translation).norm(), 0.05) << "scan " << k;
+    EXPECT_LT((odometry.getPose().translation - turn * steadyPath(k).translation).norm(), 0.05) << "scan " << k;
     EXPECT_EQ(report.engine, OdometryEngine::surfaces);
   }
   Odometry<pcl::PointXYZ> later;
   later.localizeIn(odometry.map(), SE3(Eigen::Matrix3d::Identity(), turn * steadyPath(6).translation));
   EXPECT_EQ(later.track(scanAt(5)).state, TrackingState::tracked);
-  EXPECT_LT((later.pose().translation - turn * steadyPath(5).translation).norm(), 0.05);
+  EXPECT_LT((later.getPose().translation - turn * steadyPath(5).translation).norm(), 0.05);
 }
 
 TEST(Odometry, ScanLinesOrSpaceAsIsAskedFor)

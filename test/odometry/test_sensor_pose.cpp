@@ -68,7 +68,7 @@ TEST(SensorPose, PosesAreTheVehicles)
     const OdometryReport& report = both.vehicle.report();
     EXPECT_EQ(report.state, both.sensor.report().state) << scan;
     EXPECT_EQ(report.scan_lines, both.sensor.report().scan_lines) << scan;
-    EXPECT_LT(distanceBetween(report.world_T_sensor, both.sensor.pose()), 2e-3) << scan;
+    EXPECT_LT(distanceBetween(report.world_T_sensor, both.sensor.getPose()), 2e-3) << scan;
     EXPECT_LT((atTheSensor(report) - both.sensor.report().covariance).norm(),
               0.2 * both.sensor.report().covariance.norm() + 1e-12)
         << scan;
@@ -76,7 +76,7 @@ TEST(SensorPose, PosesAreTheVehicles)
     EXPECT_LT((report.registration.sweep_twist - twist).norm(), 5e-3) << scan;
   }
   const SE3 truth = kVehicleFromSensor * steadyPath(1.0).inverse() * steadyPath(kScans) * kVehicleFromSensor.inverse();
-  EXPECT_LT((both.vehicle.pose().translation - truth.translation).norm(), 0.05);
+  EXPECT_LT((both.vehicle.getPose().translation - truth.translation).norm(), 0.05);
 }
 
 TEST(SensorPose, WhatIsGivenIsTheVehiclesToo)
@@ -97,17 +97,17 @@ TEST(SensorPose, WhatIsGivenIsTheVehiclesToo)
   both.sensor.setMotionHint(of_sensor);
   both.vehicle.trackMissing();
   both.sensor.trackMissing();
-  EXPECT_LT(distanceBetween(both.vehicle.pose(), both.sensor.pose()), 2e-3);
+  EXPECT_LT(distanceBetween(both.vehicle.getPose(), both.sensor.getPose()), 2e-3);
 
-  const SE3 elsewhere = exp((Vector6() << 0.5, 0.2, 0.0, 0.0, 0.0, 0.1).finished()) * both.vehicle.pose();
+  const SE3 elsewhere = exp((Vector6() << 0.5, 0.2, 0.0, 0.0, 0.0, 0.1).finished()) * both.vehicle.getPose();
   both.vehicle.setPose(elsewhere);
   both.sensor.setPose(elsewhere * kVehicleFromSensor);
   both.track(5);
-  EXPECT_LT(distanceBetween(both.vehicle.pose(), both.sensor.pose()), 2e-3);
+  EXPECT_LT(distanceBetween(both.vehicle.getPose(), both.sensor.getPose()), 2e-3);
 
   both.vehicle.reset(elsewhere);
-  EXPECT_LT((both.vehicle.pose().translation - elsewhere.translation).norm(), 1e-12);
-  EXPECT_EQ(both.vehicle.sensorPose().translation, kVehicleFromSensor.translation);
+  EXPECT_LT((both.vehicle.getPose().translation - elsewhere.translation).norm(), 1e-12);
+  EXPECT_EQ(both.vehicle.getSensorPose().translation, kVehicleFromSensor.translation);
 }
 
 TEST(SensorPose, ACopyAndAnIdentityChangeNothing)
@@ -121,7 +121,7 @@ TEST(SensorPose, ACopyAndAnIdentityChangeNothing)
     told = Odometry<pcl::PointXYZ>(defaults());
     static_cast<OdometryPipeline&>(told) = copy;
     told.track(bare(scan, SE3()));
-    EXPECT_EQ(plain.pose().translation, told.pose().translation) << scan;
+    EXPECT_EQ(plain.getPose().translation, told.getPose().translation) << scan;
   }
   SE3 nowhere;
   nowhere.translation.x() = std::numeric_limits<double>::quiet_NaN();

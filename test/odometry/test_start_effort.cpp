@@ -38,7 +38,7 @@ StartedRun runWith(int effort)
     odometry.track(sweep([](double t) { return steadyPath(0.2 * t); }, k));
     run.places.push_back(counts->places - before);
     run.provisional += odometry.report().provisional ? 1 : 0;
-    run.last = odometry.pose();
+    run.last = odometry.getPose();
   }
   return run;
 }

@@ -286,8 +286,8 @@ TEST(CloudRegistration, TheCovarianceFitsTheSpreadOfTheResults)
     const Vector6 error = log(SE3(Eigen::Affine3d(result.transform)));
     normalized += error.dot(Eigen::Matrix<double, 6, 6>(result.report.covariance).inverse() * error) / 6.0 / kRuns;
   }
-  EXPECT_GT(normalized, 0.2);
-  EXPECT_LT(normalized, 8.0);
+  EXPECT_GT(normalized, 0.5);
+  EXPECT_LT(normalized, 2.0);
 }
 
 }  // namespace

@@ -187,6 +187,10 @@ TEST(EdgePlaneRegistration, FeaturesMeetThoseOfTheTargetAlsoAfterTwoCloudsHaveMe
   EXPECT_EQ(registration.report().point_correspondences, 0);
   EXPECT_GT(registration.report().edge_correspondences, 0);
   EXPECT_LT((registration.getFinalTransformation() - kOther.matrix<float>()).norm(), 0.05F);
+  registration.clearSourceFeatures();
+  EXPECT_EQ(registration.getSourceFeatures(), nullptr);
+  registration.align(output);
+  EXPECT_GT(registration.report().point_correspondences, 0);
 }
 
 TEST(EdgePlaneRegistration, AnotherMapOrNoneReplacesTheOneBefore)
@@ -221,6 +225,18 @@ TEST(EdgePlaneRegistration, AnotherMapOrNoneReplacesTheOneBefore)
   registration.setInputTargetMap(far);
   registration.setInputTargetMap(nullptr);
   EXPECT_EQ(registration.getInputTarget(), cloud);
+}
+
+TEST(EdgePlaneRegistration, FeatureParametersOutOfRangeAreRefused)
+{
+  Registration registration;
+  FeatureParameters parameters;
+  parameters.max_range = 50.0F;
+  registration.setFeatureParameters(parameters);
+  EXPECT_EQ(registration.getFeatureParameters().max_range, 50.0F);
+  parameters.max_range = 0.1F;  // less than the least
+  EXPECT_THROW(registration.setFeatureParameters(parameters), std::invalid_argument);
+  EXPECT_EQ(registration.getFeatureParameters().max_range, 50.0F);
 }
 
 TEST(EdgePlaneRegistration, PointTypesOfSourceAndTargetMayBeXyz)

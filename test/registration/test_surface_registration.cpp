@@ -50,7 +50,7 @@ double evidenceIn(Everywhere& map, double off)
   map.off = off;
   const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(SE3()), 900);
   SurfaceProblem problem = problemOf(points, map);
-  problem.wants_evidence = true;
+  problem.evidence = Evidence::total;
   problem.locked = {true, true, true, true, true, true};
   return registerSurfaces(problem).evidence;
 }
@@ -219,7 +219,7 @@ TEST(SurfaceRegistration, EvidenceIsHighestAtTheTruth)
   const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(truth), 900);
   const Corner corner(3);
   SurfaceProblem problem = problemOf(points, corner);
-  problem.wants_evidence = true;
+  problem.evidence = Evidence::total;
   const double found = registerSurfaces(problem).evidence;
   problem.locked = {true, true, true, true, true, true};
   EXPECT_GT(found, registerSurfaces(problem).evidence + 100.0);

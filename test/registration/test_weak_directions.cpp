@@ -13,12 +13,12 @@ namespace pcl_floam::test {
 namespace {
 
 /// A square floor with noise of 1 cm, and a wall along x if there is one, about farOff().
-Cloud::Ptr floorOf(unsigned seed, double half_side, bool wall)
+Cloud::Ptr floorOf(unsigned seed, double half_side, bool wall, double noise = 0.01, int points = 4000)
 {
   std::mt19937 random(seed);
   auto cloud = pcl::make_shared<Cloud>();
-  for (int i = 0; i < 4000; ++i) {
-    Eigen::Vector3d p(uniform(random, half_side), uniform(random, half_side), uniform(random, 0.01));
+  for (int i = 0; i < points; ++i) {
+    Eigen::Vector3d p(uniform(random, half_side), uniform(random, half_side), uniform(random, noise));
     if (wall && i % 2 == 0) {
       p = Eigen::Vector3d(p.x(), half_side + p.z(), p.y() + half_side);
     }
@@ -112,6 +112,21 @@ TEST(WeakDirections, NothingIsClaimedOfTheWayAlongFloorAndWall)
   EXPECT_GT(std::sqrt(result.report.covariance(0, 0)), 0.01);
   EXPECT_LT(std::abs(result.error[1]), 0.001);
   EXPECT_LT(std::abs(result.error[2]), 0.001);
+}
+
+TEST(WeakDirections, NoiseThatHidesASurfaceHoldsNoMotionAlongIt)
+{
+  // Many neighbourhoods are as thick as wide: each of these points seems to hold the pose in all directions.
+  constexpr double kNoise = 0.02;  // m, of points 2.8 to 4 cm apart
+  const Vector6 twist = (Vector6() << 0.08, -0.06, 0.02, 0.01, -0.01, 0.05).finished();
+  for (const bool wall : {false, true}) {
+    const auto cloud = [&](unsigned seed) { return floorOf(seed, 2.0, wall, wall ? 1.5 * kNoise : kNoise, 20000); };
+    const Result result = align(cloud(1), cloud(2), twist);
+    EXPECT_EQ(result.report.weak_directions.size(), wall ? 1U : 3U) << wall;
+    EXPECT_LT(result.after, 1.05 * result.before) << wall;
+    EXPECT_LT(std::abs(result.error[0]), 3.0 * std::sqrt(result.report.covariance(0, 0))) << wall;
+    EXPECT_LT(std::abs(result.error[2]), 0.2 * kNoise) << wall;
+  }
 }
 
 TEST(WeakDirections, AFlatCloudDoesNotGetWorseUnseen)

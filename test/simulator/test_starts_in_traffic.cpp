@@ -135,7 +135,7 @@ TEST_P(AmbiguousStarts, ACopyKnowsOfThemToo)
     odometry.track(sweep.cloud);
     copy.track(sweep.cloud);
   }
-  EXPECT_EQ(copy.pose().translation, odometry.pose().translation);
+  EXPECT_EQ(copy.getPose().translation, odometry.getPose().translation);
 }
 
 /// A lorry beside the sensor stays there for seconds after the start.

@@ -106,7 +106,7 @@ TEST(UndecidedStarts, AreSettledByAPoseThatIsGiven)
     odometry.track(simulation.sweep(number).cloud);
   }
   EXPECT_TRUE(saysSeveralExplain(odometry.report()));
-  odometry.setPose(odometry.pose());
+  odometry.setPose(odometry.getPose());
   EXPECT_FALSE(saysSeveralExplain(odometry.track(simulation.sweep(20).cloud)));
 }
 

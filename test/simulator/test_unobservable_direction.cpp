@@ -63,7 +63,7 @@ TEST(UnobservableDirection, IsNotHiddenByTheSensorsOwnColumns)
       if (report.state != TrackingState::tracked || !report.corrected_poses.empty()) {
         tracked.clear();
       }
-      tracked.push_back(odometry.pose());
+      tracked.push_back(odometry.getPose());
       if (tracked.size() > kSecond) {
         ++judged;
         const SE3 moved = tracked[tracked.size() - 1 - kSecond].inverse() * tracked.back();
@@ -99,9 +99,9 @@ TEST(UnobservableDirection, IsGoneThroughBetweenDoors)
       odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
       if (scan == kStarted) {
         truth_there = sweep.world_T_middle;
-        there = odometry.pose();
+        there = odometry.getPose();
       } else if (scan > kStarted) {
-        const SE3 off = (truth_there.inverse() * sweep.world_T_middle).inverse() * (there.inverse() * odometry.pose());
+        const SE3 off = (truth_there.inverse() * sweep.world_T_middle).inverse() * (there.inverse() * odometry.getPose());
         ASSERT_LT(off.translation.norm(), kFarthestOff) << "seed " << seed << ", scan " << scan;
       }
     }
@@ -139,7 +139,7 @@ TEST(UnobservableDirection, IsLeftToAHint)
     }
     last = sweep.world_T_middle;
     odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
-    const SE3 error = (first.inverse() * last).inverse() * odometry.pose();
+    const SE3 error = (first.inverse() * last).inverse() * odometry.getPose();
     farthest = std::max(farthest, error.translation.norm());
   }
   RecordProperty("farthest_m", std::to_string(farthest));

@@ -56,6 +56,7 @@ public:
   {
     setTwist(log(SE3(start_T_end)));
   }
+  [[nodiscard]] SE3 getMotion() const { return exp(twist_); }
 
   /// The instant from which the output is seen. Default: the sweep's end.
   void setReferenceInstant(PoseInstant instant) { instant_ = instant; }

@@ -1,5 +1,5 @@
 /// \file scan_lines.h
-/// Who is a point's neighbour: its scan line m and its place n within the line.
+/// Which laser saw each point of a scan, and in which order: its scan line m and its place n within the line.
 #pragma once
 
 #include <pcl_floam/common/core/cloud_view.h>

@@ -2,6 +2,7 @@
 /// Saves the map as PCD files and loads it again.
 #pragma once
 
+#include <pcl_floam/io/file_error.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
 
 #include <filesystem>

@@ -2,44 +2,22 @@
 /// Scans on disk: folders of PCD files or KITTI's .bin files, and recordings (mcap, rosbag, pcap).
 #pragma once
 
+#include <pcl_floam/io/file_error.h>
+
 #include <pcl/PCLPointCloud2.h>
 
-#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 namespace pcl_floam {
 
 class ScanReader;
-
-/// A file could not be read or written. `what()` names the file, the place in it, and the reason.
-class FileError : public std::runtime_error {
-public:
-  FileError(std::filesystem::path path, const std::string& reason)
-      : std::runtime_error(path.string() + ": " + reason), path_(std::move(path))
-  {
-  }
-
-  /// An error whose reason the system knows: to be called right after what failed (it reads `errno`).
-  [[nodiscard]] static FileError ofSystem(std::filesystem::path path, const std::string& what)
-  {
-    const int code = errno;
-    return {std::move(path), code == 0 ? what : what + ": " + std::generic_category().message(code)};
-  }
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-  std::filesystem::path path_;
-};
 
 /// What a source's scans are kept in.
 enum class ScanFormat { pcd, kitti_bin, mcap, rosbag1, rosbag2, pcap };

@@ -2,6 +2,8 @@
 /// Scans and points to PCD and PLY files.
 #pragma once
 
+#include <pcl_floam/io/file_error.h>
+
 #include <pcl/PCLPointCloud2.h>
 
 #include <Eigen/Core>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_floam/common/se3.h>
+#include <pcl_floam/io/file_error.h>
 
 #include <filesystem>
 #include <fstream>
@@ -29,7 +30,7 @@ enum class TrajectoryFormat {
 [[nodiscard]] TrajectoryFormat trajectoryFormat(const std::filesystem::path& file);
 
 /// Empty lines and lines that begin with # are skipped.
-/// \throws FileError (see scan_source.h) with file, line and reason.
+/// \throws FileError with file, line and reason.
 [[nodiscard]] Trajectory readTrajectory(const std::filesystem::path& file,
                                         TrajectoryFormat format = TrajectoryFormat::automatic);
 

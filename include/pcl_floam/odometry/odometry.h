@@ -60,7 +60,7 @@ public:
 
   /// The sensor is at another place of the map than was thought: the next scan is sought there. Map and parameters
   /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with. Before
-  /// the second scan it is the pose of the first. \ref pose and \ref report tell of it from the next scan on.
+  /// the second scan it is the pose of the first. \ref getPose and \ref report tell of it from the next scan on.
   ///
   /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees
   /// \throws std::invalid_argument for a pose that is not finite
@@ -73,20 +73,20 @@ public:
   ///
   /// \throws std::invalid_argument for a pose that is not finite, or that is turned where degrees of freedom are locked
   void setSensorPose(const SE3& frame_T_sensor);
-  [[nodiscard]] const SE3& sensorPose() const;
+  [[nodiscard]] const SE3& getSensorPose() const;
 
   /// Objects of one's own in place of the odometry's, or beside them. Forgets map and motion; \ref reset and
   /// \ref localizeIn keep them.
   ///
   /// \throws std::invalid_argument for a factor that is null, and for what the engine has no use for
   void setComponents(const OdometryComponents& components);
-  [[nodiscard]] const OdometryComponents& components() const;
+  [[nodiscard]] const OdometryComponents& getComponents() const;
 
   /// The last report.
   [[nodiscard]] const OdometryReport& report() const;
 
   /// `world_T_sensor` of the last scan, at the instant that the parameters name.
-  [[nodiscard]] SE3 pose() const;
+  [[nodiscard]] SE3 getPose() const;
 
   /// Edge and plane layer around the sensor.
   [[nodiscard]] const KeyframeVoxelMap& map() const;

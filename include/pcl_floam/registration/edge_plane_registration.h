@@ -51,8 +51,8 @@ public:
 /// - Features set by setSourceFeatures(), or those of the source if both clouds are lidar scans with scan lines,
 ///   against the map set by setInputTargetMap() or the target's features: the paper's way (\ref registerFeatures).
 /// - Else all finite points of both clouds, each pair weighed by the shapes around both points (\ref registerClouds),
-///   with no length that is not relative to the clouds' spacing. A cloud whose points show its sensor's scan lines
-///   rather than its surfaces is thinned to the means of its points within voxels throughout.
+///   with no length that is not relative to the clouds' spacing. A cloud whose points show its sensor's scan lines or
+///   noise rather than its surfaces is thinned to the means of its points within voxels throughout.
 ///
 /// Should scans have too few features in common, all their points are tried, too.
 ///

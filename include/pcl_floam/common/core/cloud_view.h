@@ -53,7 +53,6 @@ struct CloudView {
   [[nodiscard]] float z(std::size_t i) const { return readFloat(point(i) + z_offset); }
   /// 0 without the field, or where it is no number that float32 can hold.
   [[nodiscard]] float intensityOf(std::size_t i) const;
-  [[nodiscard]] bool isOrganized() const { return height > 1; }
 
   static float readFloat(const std::uint8_t* bytes)
   {

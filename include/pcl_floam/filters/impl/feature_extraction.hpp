@@ -1,3 +1,4 @@
+// FeatureExtraction: what its templates do.
 #pragma once
 
 // PCL's own templates, too: its libraries hold them for PCL's point types only, not for PointXYZIRT or yours.

@@ -1,3 +1,4 @@
+// MotionCompensation: what its template does.
 #pragma once
 
 #include <pcl_floam/filters/impl/take_points.hpp>

@@ -1,3 +1,4 @@
+// The points of a filter that moves them: all, or those of its indices.
 #pragma once
 
 // PCL's own templates, too: its libraries hold them for PCL's point types only, not for PointXYZIRT or yours.

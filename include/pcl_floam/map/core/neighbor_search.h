@@ -1,5 +1,5 @@
 /// \file neighbor_search.h
-/// The one interface of the voxel search and of FLANN's KD-tree.
+/// Nearest neighbours in a layer of the map: what \ref KeyframeVoxelMap::search gives, by voxels or FLANN's KD-tree.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,3 +1,4 @@
+// KeyframeVoxelMap: clouds of any point type in and out.
 #pragma once
 
 #include <pcl/common/point_tests.h>

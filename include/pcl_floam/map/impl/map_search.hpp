@@ -1,3 +1,4 @@
+// MapSearch: what its templates do.
 #pragma once
 
 namespace pcl_floam {

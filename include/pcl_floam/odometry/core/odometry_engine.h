@@ -1,5 +1,5 @@
 /// \file odometry_engine.h
-/// What the scans of an odometry are registered by.
+/// The choice between the library's registration by surfaces and the paper's by features.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,8 @@
 #include <pcl_floam/map/core/finite_search.h>
 
 #include <pcl/conversions.h>
+#include <pcl/point_representation.h>
+#include <pcl/search/kdtree.h>
 
 #include <cmath>
 #include <limits>
@@ -179,13 +181,25 @@ bool EdgePlaneRegistration<PointSource, PointTarget, Scalar>::iterated(const Clo
   return this->convergence_criteria_->hasConverged();
 }
 
+/// Null if the search has no tree of its base's, as PCL 1.15.1's KdTreeNanoflann: the base does not look before it
+/// asks.
+template <typename PointT>
+[[nodiscard]] typename pcl::PointRepresentation<PointT>::ConstPtr representationOf(
+    const pcl::search::KdTree<PointT>& search)
+{
+  struct Opened : pcl::search::KdTree<PointT> {
+    static bool hasTree(const pcl::search::KdTree<PointT>& tree) { return tree.*(&Opened::tree_) != nullptr; }
+  };
+  return Opened::hasTree(search) ? search.getPointRepresentation() : nullptr;
+}
+
 /// Asks the user's search for whole points: it may look at more of them than their place.
 template <typename PointSource, typename PointTarget, typename Scalar>
 std::vector<int> EdgePlaneRegistration<PointSource, PointTarget, Scalar>::searchTarget(const std::vector<int>& source,
                                                                                        const SE3& target_T_source)
 {
   const PointCloudSource moved = movedSource(target_T_source);
-  const auto representation = this->tree_->getPointRepresentation();
+  const auto representation = representationOf(*this->tree_);
   std::vector<int> nearest(source.size(), -1);
   pcl::Indices found(1);
   std::vector<float> squared_distance(1);
