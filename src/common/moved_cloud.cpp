@@ -1,5 +1,7 @@
 #include <pcl_floam/common/core/moved_cloud.h>
 
+#include <stdexcept>
+
 namespace pcl_floam {
 
 CloudView MovedCloud::take(const CloudView& cloud, const SE3& target_T_source)
@@ -23,6 +25,15 @@ CloudView MovedCloud::take(const CloudView& cloud, const SE3& target_T_source)
   CloudView moved = cloud;
   moved.data = bytes_.data();
   return moved;
+}
+
+void SensorPose::set(const SE3& frame_T_sensor)
+{
+  if (!frame_T_sensor.isFinite()) {
+    throw std::invalid_argument("the sensor's pose in its clouds' frame is not finite");
+  }
+  frame_T_sensor_ = frame_T_sensor;
+  is_identity_ = frame_T_sensor.rotation.isIdentity(0.0) && frame_T_sensor.translation.isZero(0.0);
 }
 
 }  // namespace pcl_floam

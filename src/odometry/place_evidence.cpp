@@ -38,12 +38,11 @@ std::vector<float> evidenceByPlace(const std::vector<float>& of_points, const st
 
 void PlaceVotes::add(const std::vector<float>& own, const std::vector<float>& others)
 {
-  const std::size_t places = std::min(own.size(), others.size());
-  for (std::size_t i = 0; i < places; ++i) {
+  for (std::size_t i = 0; i < std::min(own.size(), others.size()); ++i) {
     lead_ += static_cast<double>(others[i] > own[i]) - static_cast<double>(others[i] < own[i]);
     differing_ += static_cast<double>(others[i] != own[i]);
   }
-  sweeps_ += places > 0 ? 1.0 : 0.0;  // the first ones have none: their motion is what is supposed
+  sweeps_ += 1.0;  // also where none differs, as in the first two: young maps tell less than chance allows for
 }
 
 /// Of N places that vote by chance, the lead has a variance of N.

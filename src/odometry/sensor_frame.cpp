@@ -4,28 +4,23 @@
 
 namespace pcl_floam {
 
-SensorFrame::SensorFrame(const SE3& frame_T_sensor)
-    : frame_T_sensor_(frame_T_sensor), sensor_T_frame_(frame_T_sensor.inverse()), is_sensors_own_(false)
+SensorFrame::SensorFrame(const SE3& frame_T_sensor) : sensor_T_frame_(frame_T_sensor.inverse())
 {
-}
-
-CloudView SensorFrame::ofSensor(const CloudView& cloud)
-{
-  return is_sensors_own_ ? cloud : cloud_.take(cloud, sensor_T_frame_);
+  sensor_.set(frame_T_sensor);
 }
 
 MotionHint SensorFrame::ofSensor(const MotionHint& hint) const
 {
   const Matrix6 turned = adjoint(sensor_T_frame_);
-  return {sensor_T_frame_ * hint.last_T_now * frame_T_sensor_, propagated(turned, hint.covariance)};
+  return {sensor_T_frame_ * hint.last_T_now * pose(), propagated(turned, hint.covariance)};
 }
 
 void SensorFrame::tell(const OdometryReport& of_sensor)
 {
-  if (is_sensors_own_) {
+  if (sensor_.isIdentity()) {
     return;
   }
-  const Matrix6 turned = adjoint(frame_T_sensor_);
+  const Matrix6 turned = adjoint(pose());
   const Matrix6 lever = leverOf(-(of_sensor.world_T_sensor.rotation * sensor_T_frame_.translation));
   report_ = of_sensor;
   report_.world_T_sensor = of_sensor.world_T_sensor * sensor_T_frame_;

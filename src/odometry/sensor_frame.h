@@ -14,13 +14,14 @@ class SensorFrame {
 public:
   /// Clouds are given in the sensor's own frame.
   SensorFrame() = default;
+  /// \throws std::invalid_argument for a pose that is not finite
   explicit SensorFrame(const SE3& frame_T_sensor);
 
-  [[nodiscard]] const SE3& pose() const { return frame_T_sensor_; }
+  [[nodiscard]] const SE3& pose() const { return sensor_.get(); }
 
   /// As the sensor sees it; valid until the next call.
-  [[nodiscard]] CloudView ofSensor(const CloudView& cloud);
-  [[nodiscard]] SE3 ofSensor(const SE3& world_T_frame) const { return world_T_frame * frame_T_sensor_; }
+  [[nodiscard]] CloudView ofSensor(const CloudView& cloud) { return sensor_.ofSensor(cloud); }
+  [[nodiscard]] SE3 ofSensor(const SE3& world_T_frame) const { return world_T_frame * pose(); }
   [[nodiscard]] MotionHint ofSensor(const MotionHint& hint) const;
 
   /// Takes the last report on the sensor, and says what it tells of the frame.
@@ -28,14 +29,12 @@ public:
   /// \param of_sensor the last report on the sensor
   [[nodiscard]] const OdometryReport& report(const OdometryReport& of_sensor) const
   {
-    return is_sensors_own_ ? of_sensor : report_;
+    return sensor_.isIdentity() ? of_sensor : report_;
   }
 
 private:
-  SE3 frame_T_sensor_;
+  SensorPose sensor_;
   SE3 sensor_T_frame_;
-  bool is_sensors_own_ = true;
-  MovedCloud cloud_;
   OdometryReport report_;
 };
 

@@ -227,6 +227,32 @@ TEST(EdgePlaneRegistration, AnotherMapOrNoneReplacesTheOneBefore)
   EXPECT_EQ(registration.getInputTarget(), cloud);
 }
 
+TEST(EdgePlaneRegistration, ScansInAVehiclesFrameAreRegisteredThere)
+{
+  const SE3 vehicle_T_sensor = exp((Vector6() << 1.5, -0.4, 1.8, 0.1, 0.35, 2.0).finished());
+  const auto ofVehicle = [&](const Cloud::ConstPtr& scan) {
+    auto moved = pcl::make_shared<Cloud>();
+    pcl::transformPointCloud(*scan, *moved, vehicle_T_sensor.matrix<float>());
+    return moved;
+  };
+  Registration of_sensor;
+  of_sensor.setInputSource(scanFrom(kOther));
+  of_sensor.setInputTarget(scanFrom(SE3()));
+  Registration of_vehicle;
+  of_vehicle.setSensorPose(vehicle_T_sensor);
+  EXPECT_EQ(of_vehicle.getSensorPose().translation, vehicle_T_sensor.translation);
+  of_vehicle.setInputSource(ofVehicle(scanFrom(kOther)));
+  of_vehicle.setInputTarget(ofVehicle(scanFrom(SE3())));
+  Cloud output;
+  of_sensor.align(output);
+  of_vehicle.align(output);
+  ASSERT_TRUE(of_vehicle.hasConverged());
+  const SE3 expected = vehicle_T_sensor * of_sensor.report().target_T_source * vehicle_T_sensor.inverse();
+  EXPECT_LT(log(expected.inverse() * of_vehicle.report().target_T_source).norm(), 1e-3);
+  EXPECT_NEAR(of_vehicle.report().edge_correspondences, of_sensor.report().edge_correspondences,
+              0.05 * of_sensor.report().edge_correspondences);
+}
+
 TEST(EdgePlaneRegistration, FeatureParametersOutOfRangeAreRefused)
 {
   Registration registration;

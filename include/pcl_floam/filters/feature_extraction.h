@@ -2,6 +2,7 @@
 /// Edge and plane features as a PCL filter.
 #pragma once
 
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/filters/core/feature_kind.h>
@@ -58,6 +59,12 @@ public:
   void setSensor(const SensorModel& sensor) { sensor_ = sensor; }
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 
+  /// Where the sensor is in the frame of the clouds, if that is not its own but a vehicle's: scan lines,
+  /// times, ranges and smoothness go by where points were measured from. Features are in the clouds' frame.
+  /// \throws std::invalid_argument for a pose that is not finite
+  void setSensorPose(const SE3& frame_T_sensor) { sensor_pose_.set(frame_T_sensor); }
+  [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
+
   /// Where the scan lines are to come from. Default: automatic.
   void setScanLineSource(ScanLineSource source) { line_source_ = source; }
   [[nodiscard]] ScanLineSource getScanLineSource() const { return line_source_; }
@@ -90,6 +97,7 @@ private:
   FeatureKind kind_ = FeatureKind::edge;
   FeatureParameters parameters_;
   SensorModel sensor_;
+  SensorPose sensor_pose_;
   ScanLineSource line_source_ = ScanLineSource::automatic;
   ScanTimingSource timing_source_ = ScanTimingSource::automatic;
   int threads_ = 1;

@@ -2,6 +2,7 @@
 /// The undoing of a sweep's distortion as a PCL filter.
 #pragma once
 
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/motion_compensation_mode.h>
 #include <pcl_floam/filters/core/scan_timing.h>
@@ -66,6 +67,12 @@ public:
   void setSensor(const SensorModel& sensor) { sensor_ = sensor; }
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 
+  /// Where the sensor is in the frame of the clouds, if that is not its own but a vehicle's: scan lines
+  /// and times that azimuths tell go by it. The motion is that of the clouds' frame.
+  /// \throws std::invalid_argument for a pose that is not finite
+  void setSensorPose(const SE3& frame_T_sensor) { sensor_pose_.set(frame_T_sensor); }
+  [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
+
   /// Where the points' times are to come from. Default: automatic.
   void setScanTimingSource(ScanTimingSource source) { timing_source_ = source; }
   [[nodiscard]] ScanTimingSource getScanTimingSource() const { return timing_source_; }
@@ -86,6 +93,7 @@ private:
   Vector6 acceleration_ = Vector6::Zero();
   PoseInstant instant_ = PoseInstant::end;
   SensorModel sensor_;
+  SensorPose sensor_pose_;
   ScanTimingSource timing_source_ = ScanTimingSource::automatic;
   ScanTiming timing_;
   int threads_ = 1;

@@ -2,6 +2,7 @@
 /// Correction of a sensor's vertical calibration, as a PCL filter.
 #pragma once
 
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/filters/core/vertical_angle.h>
 
 #include <pcl/filters/filter.h>
@@ -35,11 +36,18 @@ public:
   void setAngle(double degrees);
   [[nodiscard]] double getAngle() const { return degrees_; }
 
+  /// Where the sensor is in the frame of the clouds, if that is not its own but a vehicle's: points rise as
+  /// seen from it.
+  /// \throws std::invalid_argument for a pose that is not finite
+  void setSensorPose(const SE3& frame_T_sensor) { sensor_pose_.set(frame_T_sensor); }
+  [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
+
 protected:
   void applyFilter(PointCloud& output) override;
 
 private:
   double degrees_ = 0.0;
+  SensorPose sensor_pose_;
 };
 
 }  // namespace pcl_floam

@@ -2,6 +2,7 @@
 /// The pose estimation as a PCL registration.
 #pragma once
 
+#include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
@@ -115,6 +116,12 @@ public:
   void setSensor(const SensorModel& sensor);
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 
+  /// Where that sensor is in the clouds' frame, if that is not its own but a vehicle's: scan lines, and with them
+  /// features, go by where points were measured from. The pose that is found is that of the clouds' frames.
+  /// \throws std::invalid_argument for a pose that is not finite
+  void setSensorPose(const SE3& frame_T_sensor);
+  [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
+
   /// Features to register in place of those of the source cloud (which is still the one that align() transforms).
   void setSourceFeatures(const FeatureSet& features);
   void clearSourceFeatures();
@@ -164,6 +171,7 @@ private:
   void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;
+  [[nodiscard]] FeatureSet featuresOf(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
   [[nodiscard]] const KeyframeVoxelMap* targetFeatures();
   [[nodiscard]] const PreparedCloud& targetPoints();
   [[nodiscard]] bool wantsPoints() const;
@@ -191,6 +199,7 @@ private:
   std::vector<PoseFactor::ConstPtr> factors_;
   FeatureParameters feature_parameters_;
   SensorModel sensor_;
+  SensorPose sensor_pose_;
   std::optional<FeatureSet> source_features_;
   KeyframeVoxelMap::ConstPtr target_map_;
   PointCloudTargetConstPtr map_cloud_;   ///< the target while it stands in for a map

@@ -21,4 +21,25 @@ private:
   std::vector<std::uint8_t> bytes_;
 };
 
+/// Where the sensor is in the frame that its clouds are given in, if that is not its own but a vehicle's.
+class SensorPose {
+public:
+  /// \throws std::invalid_argument for a pose that is not finite
+  void set(const SE3& frame_T_sensor);
+  [[nodiscard]] const SE3& get() const { return frame_T_sensor_; }
+  /// Whether clouds are given in the sensor's own frame.
+  [[nodiscard]] bool isIdentity() const { return is_identity_; }
+
+  /// The cloud as the sensor sees it; valid until the next call.
+  [[nodiscard]] CloudView ofSensor(const CloudView& cloud)
+  {
+    return is_identity_ ? cloud : cloud_.take(cloud, frame_T_sensor_.inverse());
+  }
+
+private:
+  SE3 frame_T_sensor_;
+  bool is_identity_ = true;
+  MovedCloud cloud_;
+};
+
 }  // namespace pcl_floam

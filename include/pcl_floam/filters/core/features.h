@@ -2,6 +2,8 @@
 /// Edge and plane features of one scan.
 #pragma once
 
+#include <pcl_floam/common/se3.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -33,5 +35,8 @@ struct FeatureSet {
     planes.clear();
   }
 };
+
+/// Gives features' places in another frame.
+void moveFeatures(FeatureSet& features, const SE3& target_T_source);
 
 }  // namespace pcl_floam

@@ -15,7 +15,7 @@ namespace pcl_floam {
 template <typename PointT>
 void FeatureExtraction<PointT>::extractFromInput(FeatureSet& features)
 {
-  const CloudView cloud = viewOf(*this->input_);
+  const CloudView cloud = sensor_pose_.ofSensor(viewOf(*this->input_));
   findScanLines(cloud, sensor_, line_source_, lines_, threads_);
   timing_ = findScanTiming(cloud, lines_, timing_source_);
   std::vector<std::uint8_t> selectable;
@@ -23,6 +23,9 @@ void FeatureExtraction<PointT>::extractFromInput(FeatureSet& features)
     selectable = maskOf(*this->indices_, cloud.size);
   }
   extractFeatures(cloud, lines_, timing_, parameters_, features, selectable, threads_);
+  if (!sensor_pose_.isIdentity()) {
+    moveFeatures(features, sensor_pose_.get());
+  }
 }
 
 template <typename PointT>

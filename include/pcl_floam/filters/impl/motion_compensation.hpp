@@ -31,7 +31,7 @@ void MotionCompensation<PointT>::setAcceleration(const Vector6& acceleration)
 template <typename PointT>
 void MotionCompensation<PointT>::applyFilter(PointCloud& output)
 {
-  const CloudView cloud = viewOf(*this->input_);
+  const CloudView cloud = sensor_pose_.ofSensor(viewOf(*this->input_));
   ScanLines lines;
   timing_ = findScanTiming(cloud, lines, timing_source_, threads_);
   if (!timing_.valid() && timing_source_ != ScanTimingSource::none) {  // without a time field, scan lines must tell

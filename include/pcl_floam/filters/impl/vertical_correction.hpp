@@ -27,14 +27,20 @@ template <typename PointT>
 void VerticalCorrection<PointT>::applyFilter(PointCloud& output)
 {
   takePoints(this->filter_name_, *this->input_, this->fake_indices_ ? nullptr : this->indices_.get(), output);
+  const SE3& frame_T_sensor = sensor_pose_.get();
+  const SE3 sensor_T_frame = frame_T_sensor.inverse();
+  const Eigen::Quaternionf rotation(frame_T_sensor.rotation.template cast<float>());
   for (PointT& point : output) {
     if (!pcl::isXYZFinite(point)) {
       continue;
     }
-    const Eigen::Vector3f before = point.getVector3fMap();
-    correctVerticalAngle(degrees_, 1, &point.x, &point.y, &point.z);
+    const Eigen::Vector3f before =
+        (sensor_T_frame * point.getVector3fMap().template cast<double>()).template cast<float>();
+    Eigen::Vector3f after = before;
+    correctVerticalAngle(degrees_, 1, &after.x(), &after.y(), &after.z());
+    point.getVector3fMap() = (frame_T_sensor * after.cast<double>()).template cast<float>();
     if constexpr (pcl::traits::has_normal_v<PointT>) {
-      const Eigen::Quaternionf turn = Eigen::Quaternionf::FromTwoVectors(before, point.getVector3fMap());
+      const Eigen::Quaternionf turn(rotation * Eigen::Quaternionf::FromTwoVectors(before, after) * rotation.inverse());
       point.getNormalVector3fMap() = turn * point.getNormalVector3fMap();
     }
   }

@@ -27,6 +27,18 @@ std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar
   return maskOf(*this->indices_, this->input_->size());
 }
 
+/// Of a scan with scan lines, in its cloud's frame.
+template <typename PointSource, typename PointTarget, typename Scalar>
+FeatureSet EdgePlaneRegistration<PointSource, PointTarget, Scalar>::featuresOf(
+    const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
+{
+  FeatureSet features = scanLineFeatures(sensor_pose_.ofSensor(cloud), sensor_, feature_parameters_, selectable);
+  if (!sensor_pose_.isIdentity()) {
+    moveFeatures(features, sensor_pose_.get());
+  }
+  return features;
+}
+
 template <typename PointSource, typename PointTarget, typename Scalar>
 const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>::targetFeatures()
 {
@@ -35,7 +47,7 @@ const KeyframeVoxelMap* EdgePlaneRegistration<PointSource, PointTarget, Scalar>:
   }
   if (!prepared_target_) {
     prepared_target_ = std::make_shared<Target>();
-    const FeatureSet features = scanLineFeatures(viewOf(*this->target_), sensor_, feature_parameters_);
+    const FeatureSet features = featuresOf(viewOf(*this->target_), {});
     if (static_cast<int>(features.planes.size() + features.edges.size()) >= kFewestCorrespondences) {
       prepared_target_->features = std::make_unique<KeyframeVoxelMap>();
       prepared_target_->features->insert(features, SE3());
@@ -167,9 +179,7 @@ RegistrationReport EdgePlaneRegistration<PointSource, PointTarget, Scalar>::regi
     return report;
   }
   if (target_map_ || (!wantsPoints() && targetFeatures() != nullptr)) {
-    FeatureSet source = source_features_
-                            ? *source_features_
-                            : scanLineFeatures(viewOf(*registered_), sensor_, feature_parameters_, selectableSource());
+    FeatureSet source = source_features_ ? *source_features_ : featuresOf(viewOf(*registered_), selectableSource());
     if (target_map_ && source.planes.empty() && source.edges.empty()) {
       source = pointFeatures(viewOf(*registered_), selectableSource());
     }

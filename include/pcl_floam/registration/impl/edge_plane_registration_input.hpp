@@ -37,6 +37,13 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const Se
   prepared_target_.reset();
 }
 
+template <typename PointSource, typename PointTarget, typename Scalar>
+void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensorPose(const SE3& frame_T_sensor)
+{
+  sensor_pose_.set(frame_T_sensor);
+  prepared_target_.reset();
+}
+
 /// What the last align() found does not belong to other input.
 template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::forgetResult()

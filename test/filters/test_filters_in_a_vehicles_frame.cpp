@@ -1,0 +1,116 @@
+// Clouds that are given in a vehicle's frame: filters that are told where the sensor is do as in the sensor's own.
+#define PCL_NO_PRECOMPILE
+#include "support/constants.h"
+#include "support/room_scans.h"
+#include "support/synthetic_cloud.h"
+
+#include <pcl_floam/filters/feature_extraction.h>
+#include <pcl_floam/filters/motion_compensation.h>
+#include <pcl_floam/filters/vertical_correction.h>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <stdexcept>
+
+namespace pcl_floam::test {
+namespace {
+
+using Bare = pcl::PointCloud<pcl::PointXYZ>;
+
+/// Ahead, above and tilted, so that its scan lines are cones about no axis of the vehicle.
+const SE3 kVehicleFromSensor = exp((Vector6() << 1.5, -0.4, 1.8, 0.1, 0.35, 2.0).finished());
+
+/// A room without rings and times, which must be found from where its points lie.
+Bare::Ptr room(const Vector6& twist = Vector6::Zero())
+{
+  return pcl::make_shared<Bare>(
+      toPositions(sweepRoom(Room(), Lidar(), [&](double fraction) { return exp(Vector6(fraction * twist)); })));
+}
+
+Bare::Ptr moved(const Bare& cloud, const SE3& target_T_source)
+{
+  auto result = pcl::make_shared<Bare>(cloud);
+  for (pcl::PointXYZ& point : *result) {
+    point.getVector3fMap() = (target_T_source * point.getVector3fMap().cast<double>().eval()).cast<float>();
+  }
+  return result;
+}
+
+void expectNear(const Bare& a, const Bare& b, float limit)
+{
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ASSERT_LT((a[i].getVector3fMap() - b[i].getVector3fMap()).norm(), limit) << i;
+  }
+}
+
+TEST(FiltersInAVehiclesFrame, FindTheSensorsFeaturesInIt)
+{
+  FeatureSet of_sensor;
+  FeatureSet of_vehicle;
+  FeatureExtraction<pcl::PointXYZ> extraction;
+  extraction.setInputCloud(room());
+  ASSERT_TRUE(extraction.extract(of_sensor));
+  extraction.setInputCloud(moved(*room(), kVehicleFromSensor));
+  extraction.setSensorPose(kVehicleFromSensor);
+  EXPECT_EQ(extraction.getSensorPose().translation, kVehicleFromSensor.translation);
+  ASSERT_TRUE(extraction.extract(of_vehicle));
+  // Rounding decides between a few that are about as sharp.
+  EXPECT_NEAR(static_cast<double>(of_vehicle.edges.size()), static_cast<double>(of_sensor.edges.size()),
+              0.02 * static_cast<double>(of_sensor.edges.size()));
+  std::size_t same = 0;
+  for (const Feature& feature : of_vehicle.edges) {
+    for (const Feature& other : of_sensor.edges) {
+      const Eigen::Vector3d there = kVehicleFromSensor * Eigen::Vector3d(other.x, other.y, other.z);
+      if (feature.index == other.index) {
+        EXPECT_LT((there - Eigen::Vector3d(feature.x, feature.y, feature.z)).norm(), 1e-3);
+        ++same;
+      }
+    }
+  }
+  EXPECT_GT(same, 0.95 * static_cast<double>(of_sensor.edges.size()));
+}
+
+TEST(FiltersInAVehiclesFrame, UndoItsMotionByTheSensorsAzimuths)
+{
+  const Vector6 twist = (Vector6() << 0.4, 0.1, 0.0, 0.0, 0.0, 0.1).finished();  // of the sensor
+  MotionCompensation<pcl::PointXYZ> compensation;
+  Bare of_sensor;
+  compensation.setInputCloud(room(twist));
+  compensation.setTwist(twist);
+  compensation.filter(of_sensor);
+  ASSERT_EQ(compensation.getScanTiming().source, ScanTimingSource::azimuth);
+  Bare of_vehicle;
+  compensation.setInputCloud(moved(*room(twist), kVehicleFromSensor));
+  compensation.setSensorPose(kVehicleFromSensor);
+  compensation.setMotion(kVehicleFromSensor * exp(twist) * kVehicleFromSensor.inverse());
+  compensation.filter(of_vehicle);
+  EXPECT_EQ(compensation.getScanTiming().source, ScanTimingSource::azimuth);
+  expectNear(of_vehicle, *moved(of_sensor, kVehicleFromSensor), 1e-4F);
+}
+
+TEST(FiltersInAVehiclesFrame, RaisePointsAsTheSensorSeesThem)
+{
+  VerticalCorrection<pcl::PointXYZ> correction;
+  correction.setAngle(1.0);
+  Bare of_sensor;
+  correction.setInputCloud(room());
+  correction.filter(of_sensor);
+  Bare of_vehicle;
+  correction.setInputCloud(moved(*room(), kVehicleFromSensor));
+  correction.setSensorPose(kVehicleFromSensor);
+  correction.filter(of_vehicle);
+  expectNear(of_vehicle, *moved(of_sensor, kVehicleFromSensor), 1e-4F);
+}
+
+TEST(FiltersInAVehiclesFrame, RefuseAPoseThatIsNotFinite)
+{
+  const SE3 nowhere(Eigen::Matrix3d::Identity(), {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  EXPECT_THROW(FeatureExtraction<pcl::PointXYZ>().setSensorPose(nowhere), std::invalid_argument);
+  EXPECT_THROW(MotionCompensation<pcl::PointXYZ>().setSensorPose(nowhere), std::invalid_argument);
+  EXPECT_THROW(VerticalCorrection<pcl::PointXYZ>().setSensorPose(nowhere), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace pcl_floam::test
