@@ -54,8 +54,8 @@ struct RegistrationReport {
   /// of it. Perturbation order (translation m, rotation rad), on the left, with the rotation about the sensor's
   /// position and the target's axes.
   Matrix6 information = Matrix6::Zero();
-  /// Covariance of the pose in the same parametrisation: by features the information's inverse times the variance of an
-  /// independent residual, which several neighbouring ones make up. The map's own drift comes on top. Weak directions
+  /// Covariance of the pose in the same parametrisation: by features and clouds the information's inverse times that of
+  /// an independent residual, which seven neighbouring ones make up. The map's own drift comes on top. Weak directions
   /// have a variance too large to be used, not infinity, or that of the motion prior.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<WeakDirection> weak_directions;
