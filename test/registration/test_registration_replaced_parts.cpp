@@ -135,6 +135,7 @@ TEST(RegistrationReplacedParts, AReplacedEstimationTakesOver)
   EXPECT_LT(disagreement(*sampledObject(2, 1.0), setup.registration.getFinalTransformation(), motion(1.0)), 0.05);
   EXPECT_GT(estimation->calls, 1);
   EXPECT_EQ(setup.registration.report().iterations, estimation->calls);
+  EXPECT_GT(setup.registration.report().covariance.diagonal().minCoeff(), 1e3);  // of which nothing is known
 }
 
 TEST(RegistrationReplacedParts, AGuessThatScalesIsCarriedAlong)

@@ -74,7 +74,7 @@ public:
 ///   of its own or has a point representation of its own; else a faster tree of the same points is asked. Of the
 ///   source's search object, reciprocal matches make no use: they come from a tree of the library's own.
 /// - A transformation estimation or correspondence estimation set by the user takes over: ICP's own loop then runs
-///   with it.
+///   with it, and the covariance is that of a pose of which nothing is known.
 /// - A guess that is no rigid motion is carried along, as in ICP: the source is registered as the guess bends it.
 /// - `setRANSACIterations`, `setRANSACOutlierRejectionThreshold`: without effect, as in ICP itself.
 ///

@@ -200,8 +200,10 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::runBaseLoop(PointCloudSource& output,
                                                                           const Matrix4& guess)
 {
+  constexpr double kUnknown = 1e6;  // m^2 and rad^2: the user's estimation tells no more than a pose
   Base::computeTransformation(output, guess);
   report_ = RegistrationReport();
+  report_.covariance = kUnknown * Matrix6::Identity();
   report_.iterations = this->nr_iterations_;
   report_.target_T_source = SE3(Eigen::Transform<Scalar, 3, Eigen::Affine>(this->final_transformation_));
   const bool at_limit = this->convergence_criteria_->getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_ITERATIONS;
