@@ -2,6 +2,10 @@
 
 #include "common/parameter_check.h"
 
+#include <pcl_floam/filters/core/features.h>
+
+#include <vector>
+
 namespace pcl_floam {
 
 const char* toString(SmoothnessKind kind)
