@@ -156,7 +156,8 @@ template <typename Allows>
 CloudLevel thinnedUntil(CloudLevel finest, const std::vector<Eigen::Vector3f>& places, double spacing,
                         std::size_t fewest, const Allows& allows)
 {
-  for (double voxel = kFirstVoxel * spacing; voxel > 0.0; voxel *= 2.0) {
+  double voxel = kFirstVoxel * spacing;
+  while (voxel > 0.0) {
     CloudLevel thinned = bareThinned(finest, voxel);
     if (thinned.tree.size() < fewest) {
       break;
@@ -164,6 +165,7 @@ CloudLevel thinnedUntil(CloudLevel finest, const std::vector<Eigen::Vector3f>& p
     if (allows(findSampling(thinned.tree, places))) {
       return thinned;
     }
+    voxel *= 2.0;
   }
   return finest;
 }

@@ -101,7 +101,8 @@ TEST(UnobservableDirection, IsGoneThroughBetweenDoors)
         truth_there = sweep.world_T_middle;
         there = odometry.getPose();
       } else if (scan > kStarted) {
-        const SE3 off = (truth_there.inverse() * sweep.world_T_middle).inverse() * (there.inverse() * odometry.getPose());
+        const SE3 off =
+            (truth_there.inverse() * sweep.world_T_middle).inverse() * (there.inverse() * odometry.getPose());
         ASSERT_LT(off.translation.norm(), kFarthestOff) << "seed " << seed << ", scan " << scan;
       }
     }
