@@ -10,20 +10,19 @@ struct Brightness : pcl_floam::PoseFactor {
   std::map<std::array<double, 3>, std::pair<double, double>> cells;  // mean, count
   pcl_floam::CloudView scan;                                         // the present one
 
-  static std::array<double, 3> keyOf(const Eigen::Vector3d& p)
-  {
-    return {std::round(p.x() / kSide), std::round(p.y() / kSide), std::round(p.z() / kSide)};
-  }
+  static auto keyOf(const Eigen::Vector3d& p) { return std::array{rint(p.x()), rint(p.y()), rint(p.z())}; }
   double at(const Eigen::Vector3d& place) const  // NaN where nothing was seen
   {
-    const auto cell = place.allFinite() ? cells.find(keyOf(place)) : cells.end();
+    const auto cell = place.allFinite() ? cells.find(keyOf(place / kSide)) : cells.end();
     return cell == cells.end() ? std::nan("") : cell->second.first;
   }
   void learn(const pcl_floam::SE3& world_T_sensor)
   {
     for (std::size_t i = 0; i < scan.size; i += 20) {
-      auto& [mean, count] = cells[keyOf(world_T_sensor * Eigen::Vector3d(scan.x(i), scan.y(i), scan.z(i)))];
-      mean += (scan.intensityOf(i) - mean) / ++count;
+      if (const Eigen::Vector3d place(scan.x(i), scan.y(i), scan.z(i)); place.allFinite()) {
+        auto& [mean, count] = cells[keyOf(world_T_sensor * place / kSide)];
+        mean += (scan.intensityOf(i) - mean) / ++count;
+      }
     }
   }
   void addTo(const pcl_floam::SE3& world_T_sensor, pcl_floam::PoseEquations& equations) const override
@@ -46,7 +45,9 @@ struct Brightness : pcl_floam::PoseFactor {
 
 int main(int argc, char** argv)
 {
-  pcl_floam::OdometryPipeline odometry;
+  pcl_floam::OdometryParameters parameters;
+  parameters.pose_instant = pcl_floam::PoseInstant::middle;  // as factors are asked
+  pcl_floam::OdometryPipeline odometry(parameters);
   pcl_floam::OdometryComponents components;
   const auto brightness = std::make_shared<Brightness>();
   components.factors = {brightness};

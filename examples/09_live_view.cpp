@@ -52,7 +52,7 @@ try {
     viewer.spinOnce(1, true);
   }
   std::cout << path->size() << " scans, " << odometry.getPose().translation.norm() << " m from where it began\n";
-  argc > 2 ? viewer.saveScreenshot(argv[2]) : viewer.spin();
+  argc > 2 ? viewer.saveScreenshot(argv[2]) : (viewer.wasStopped() ? void() : viewer.spin());
 } catch (const pcl_floam::FileError& error) {
   std::cerr << error.what() << '\n';
   return 2;

@@ -2,10 +2,6 @@
 
 #include "common/parameter_check.h"
 
-#include <pcl_floam/filters/core/features.h>
-
-#include <vector>
-
 namespace pcl_floam {
 
 const char* toString(SmoothnessKind kind)
@@ -22,18 +18,6 @@ void validate(const FeatureParameters& p)
   check.above("max_range", p.max_range, p.min_range);
   check.atLeast("edge_threshold", p.edge_threshold, 0.0);
   check.above("plane_threshold", p.plane_threshold, 0.0);
-}
-
-void moveFeatures(FeatureSet& features, const SE3& target_T_source)
-{
-  for (std::vector<Feature>* kind : {&features.edges, &features.planes}) {
-    for (Feature& feature : *kind) {
-      const Eigen::Vector3d place = target_T_source * Eigen::Vector3d(feature.x, feature.y, feature.z);
-      feature.x = static_cast<float>(place.x());
-      feature.y = static_cast<float>(place.y());
-      feature.z = static_cast<float>(place.z());
-    }
-  }
 }
 
 }  // namespace pcl_floam

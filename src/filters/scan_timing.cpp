@@ -13,11 +13,6 @@
 
 namespace pcl_floam {
 
-ScanTimingSource reversed(ScanTimingSource source)
-{
-  return source == ScanTimingSource::clockwise ? ScanTimingSource::counterclockwise : ScanTimingSource::clockwise;
-}
-
 const char* toString(ScanTimingSource source)
 {
   switch (source) {

@@ -173,7 +173,8 @@ struct SurfaceOdometry : OdometryRun {
     if (direction() == 0.0) {
       report.timing_source = ScanTimingSource::none;
     } else if (direction() < 0.0 && report.timing_source != ScanTimingSource::none) {  // those of a scan, by azimuth
-      report.timing_source = reversed(report.timing_source);
+      const bool was_clockwise = report.timing_source == ScanTimingSource::clockwise;
+      report.timing_source = was_clockwise ? ScanTimingSource::counterclockwise : ScanTimingSource::clockwise;
       report.registration.sweep_twist = -report.registration.sweep_twist;
     }
   }

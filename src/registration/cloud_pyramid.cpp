@@ -176,9 +176,11 @@ CloudLevel withoutScanLines(CloudLevel all)
 {
   const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
   const Sampling sampling = findSampling(all.tree, places);
-  return sampling.in_lines ? thinnedUntil(std::move(all), places, sampling.spacing, kCoarsestPoints,
-                                          [](const Sampling& s) { return !s.in_lines; })
-                           : all;
+  if (!sampling.in_lines) {
+    return all;
+  }
+  return thinnedUntil(std::move(all), places, sampling.spacing, kCoarsestPoints,
+                      [](const Sampling& s) { return !s.in_lines; });
 }
 
 /// What is a surface once it is thinned was hidden by noise: its neighbourhoods are as thick as wide, so that each
@@ -189,10 +191,12 @@ CloudLevel withoutNoise(CloudLevel all)
   constexpr double kClearlyFewer = 2.0 / 3.0;   // times as many
   const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
   const Sampling sampling = findSampling(all.tree, places);
+  if (sampling.shapeless <= kMostShapeless) {
+    return all;
+  }
   const double most = std::min(kMostShapeless, kClearlyFewer * sampling.shapeless);
-  return sampling.shapeless > kMostShapeless ? thinnedUntil(std::move(all), places, sampling.spacing, kFewPoints,
-                                                            [most](const Sampling& s) { return s.shapeless <= most; })
-                                             : all;
+  return thinnedUntil(std::move(all), places, sampling.spacing, kFewPoints,
+                      [most](const Sampling& s) { return s.shapeless <= most; });
 }
 
 }  // namespace

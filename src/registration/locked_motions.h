@@ -4,6 +4,8 @@
 
 #include <pcl_floam/registration/core/registration_parameters.h>
 
+#include <Eigen/Core>
+
 #include <cstddef>
 
 namespace pcl_floam {

@@ -5,6 +5,7 @@
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include <cmath>
 #include <limits>

@@ -136,6 +136,7 @@ TEST(RegistrationReplacedParts, AReplacedEstimationTakesOver)
   EXPECT_GT(estimation->calls, 1);
   EXPECT_EQ(setup.registration.report().iterations, estimation->calls);
   EXPECT_GT(setup.registration.report().covariance.diagonal().minCoeff(), 1e3);  // of which nothing is known
+  EXPECT_EQ(setup.registration.report().weak_directions.size(), 6U);
 }
 
 TEST(RegistrationReplacedParts, AGuessThatScalesIsCarriedAlong)

@@ -84,7 +84,8 @@ public:
   /// The scan lines found by the last filter() or extract(): which source was used, how sure it is, why none.
   [[nodiscard]] const ScanLines& getScanLines() const { return lines_; }
 
-  /// The timing found by the last filter() or extract().
+  /// The timing found by the last filter() or extract(). Of a cloud in a vehicle's frame
+  /// it holds for the sensor's view of it (\ref SensorPose::ofSensor).
   [[nodiscard]] const ScanTiming& getScanTiming() const { return timing_; }
 
 protected:

@@ -82,7 +82,8 @@ public:
   void setNumberOfThreads(unsigned int threads = 0) { threads_ = threadCount(threads); }
   [[nodiscard]] int getNumberOfThreads() const { return threads_; }
 
-  /// The timing found by the last filter().
+  /// The timing found by the last filter(). Of a cloud in a vehicle's frame
+  /// it holds for the sensor's view of it (\ref SensorPose::ofSensor).
   [[nodiscard]] const ScanTiming& getScanTiming() const { return timing_; }
 
 protected:

@@ -14,7 +14,7 @@ namespace pcl_floam {
 /// A plane is at its point. An edge is near it: where the surface ends or meets the next one, or at the axis of
 /// something thin, with the time of the middle of what was seen of that.
 struct Feature {
-  float x = 0.0F;  ///< m, in the sensor's frame
+  float x = 0.0F;  ///< m, in the frame of the cloud
   float y = 0.0F;
   float z = 0.0F;
   float time = 0.0F;        ///< fraction of the sweep, in [0,1]

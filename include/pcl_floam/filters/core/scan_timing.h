@@ -25,9 +25,6 @@ enum class ScanTimingSource : std::uint8_t {
 
 [[nodiscard]] const char* toString(ScanTimingSource source);
 
-/// The source by which the head turns the other way.
-[[nodiscard]] ScanTimingSource reversed(ScanTimingSource source);
-
 /// When each point was measured, as a fraction of the sweep.
 ///
 /// A model, not a list: times are computed only for the points that are asked for.

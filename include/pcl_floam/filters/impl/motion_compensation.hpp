@@ -49,7 +49,7 @@ void MotionCompensation<PointT>::applyFilter(PointCloud& output)
   }
   for (std::size_t i = 0; i < output.size(); ++i) {
     PointT& point = output[i];
-    if (!pcl::isXYZFinite(point)) {
+    if (!pcl::isXYZFinite(point) || sensor_pose_.isNoReturn(point.getVector3fMap())) {
       continue;
     }
     const std::size_t source = indices == nullptr ? i : static_cast<std::size_t>((*indices)[i]);

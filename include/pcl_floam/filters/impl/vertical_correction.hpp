@@ -31,7 +31,7 @@ void VerticalCorrection<PointT>::applyFilter(PointCloud& output)
   const SE3 sensor_T_frame = frame_T_sensor.inverse();
   const Eigen::Quaternionf rotation(frame_T_sensor.rotation.template cast<float>());
   for (PointT& point : output) {
-    if (!pcl::isXYZFinite(point)) {
+    if (!pcl::isXYZFinite(point) || sensor_pose_.isNoReturn(point.getVector3fMap())) {
       continue;
     }
     const Eigen::Vector3f before =

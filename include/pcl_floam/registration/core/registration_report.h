@@ -51,12 +51,12 @@ struct RegistrationReport {
   Vector6 sweep_twist = Vector6::Zero();
   Vector6 sweep_acceleration = Vector6::Zero();  ///< change of that motion over the sweep
   /// J^T W J of the last iteration: by features of points and factors; by surfaces of points, without what noise makes
-  /// of it. Perturbation order (translation m, rotation rad), on the left, with the rotation about the sensor's
-  /// position and the target's axes.
+  /// of it. Perturbation order (translation m, rotation rad), on the left, with the rotation about the
+  /// origin of the source's frame (the sensor) and the target's axes.
   Matrix6 information = Matrix6::Zero();
-  /// Covariance of the pose in the same parametrisation: by features and clouds the information's inverse times that of
-  /// an independent residual, which seven neighbouring ones make up. The map's own drift comes on top. Weak directions
-  /// have a variance too large to be used, not infinity, or that of the motion prior.
+  /// Covariance of the pose in the same parametrisation: by features and clouds the information's inverse times the
+  /// variance of an independent residual, which seven neighbouring ones make up. The map's own drift comes on top. Weak
+  /// directions have a variance too large to be used, not infinity, or that of the motion prior.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<WeakDirection> weak_directions;
 

@@ -204,6 +204,9 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::runBaseLoop(PointC
   Base::computeTransformation(output, guess);
   report_ = RegistrationReport();
   report_.covariance = kUnknown * Matrix6::Identity();
+  for (int i = 0; i < 6; ++i) {
+    report_.weak_directions.push_back({Vector6::Unit(i), 0.0});
+  }
   report_.iterations = this->nr_iterations_;
   report_.target_T_source = SE3(Eigen::Transform<Scalar, 3, Eigen::Affine>(this->final_transformation_));
   const bool at_limit = this->convergence_criteria_->getConvergenceState() == Criteria::CONVERGENCE_CRITERIA_ITERATIONS;
