@@ -239,11 +239,12 @@ TEST(EdgePlaneRegistration, ScansInAVehiclesFrameAreRegisteredThere)
   of_sensor.setInputSource(scanFrom(kOther));
   of_sensor.setInputTarget(scanFrom(SE3()));
   Registration of_vehicle;
-  of_vehicle.setSensorPose(vehicle_T_sensor);
-  EXPECT_EQ(of_vehicle.getSensorPose().translation, vehicle_T_sensor.translation);
   of_vehicle.setInputSource(ofVehicle(scanFrom(kOther)));
   of_vehicle.setInputTarget(ofVehicle(scanFrom(SE3())));
   Cloud output;
+  of_vehicle.align(output);  // prepares the target as if the sensor were at the vehicle's origin
+  of_vehicle.setSensorPose(vehicle_T_sensor);
+  EXPECT_EQ(of_vehicle.getSensorPose().translation, vehicle_T_sensor.translation);
   of_sensor.align(output);
   of_vehicle.align(output);
   ASSERT_TRUE(of_vehicle.hasConverged());
