@@ -33,8 +33,8 @@ public:
   /// Whether a point is no return: zero in the clouds' frame, or at the sensor. Filters leave it where it is.
   [[nodiscard]] bool isNoReturn(const Eigen::Vector3f& point) const
   {
-    constexpr double kRounding = 1e-4;  // m: of the sensor's own place in another frame
-    return point.isZero(0.0F) || (point.cast<double>() - frame_T_sensor_.translation).norm() < kRounding;
+    constexpr double kAtTheSensor = 1e-4;  // m: of the sensor's own place in another frame
+    return point.isZero(0.0F) || (point.cast<double>() - frame_T_sensor_.translation).norm() < kAtTheSensor;
   }
 
   /// The cloud as the sensor sees it; valid until the next call.
