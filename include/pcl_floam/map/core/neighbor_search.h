@@ -1,5 +1,5 @@
 /// \file neighbor_search.h
-/// Nearest neighbours in a layer of the map (\ref KeyframeVoxelMap), by its voxels or by FLANN's KD-tree.
+/// Nearest neighbours in a layer of the map, by its voxels or by FLANN's KD-tree.
 #pragma once
 
 #include <Eigen/Core>
