@@ -6,7 +6,6 @@ namespace pcl_floam {
 
 CloudView MovedCloud::take(const CloudView& cloud, const SE3& target_T_source)
 {
-  constexpr float kNoReturn = 1e-4F;  // m: the sensor's own place, as another frame's numbers round it
   bytes_.assign(cloud.data, cloud.data + cloud.size * cloud.stride);
   for (std::size_t i = 0; i < cloud.size; ++i) {
     const Eigen::Vector3d point(cloud.x(i), cloud.y(i), cloud.z(i));
@@ -14,7 +13,7 @@ CloudView MovedCloud::take(const CloudView& cloud, const SE3& target_T_source)
       continue;  // no return, whatever the frame
     }
     Eigen::Vector3f there = (target_T_source * point).cast<float>();
-    if (there.squaredNorm() < kNoReturn * kNoReturn) {
+    if (there.cast<double>().norm() < kNoReturnWithin) {
       there.setZero();
     }
     std::uint8_t* bytes = bytes_.data() + i * cloud.stride;

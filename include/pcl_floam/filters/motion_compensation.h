@@ -25,9 +25,9 @@ namespace pcl_floam {
 /// compensation.filter(undistorted);      // as seen from the sensor at the sweep's end
 /// \endcode
 /// Points keep their order and all their fields, also their time; normals are turned with the points. Points that
-/// are not finite stay as they are. If no time can be told, or nothing moves, the output is a copy of the input.
-/// With indices set, the output holds just those points, in their order; an index that is none of the cloud's points
-/// makes `filter` throw std::invalid_argument.
+/// are not finite, or no returns (zero, or at the sensor), stay as they are. If no time can be told, or nothing moves,
+/// the output is a copy of the input. With indices set, the output holds just those points, in their order; an index
+/// that is none of the cloud's points makes `filter` throw std::invalid_argument.
 template <typename PointT>
 class MotionCompensation : public pcl::Filter<PointT> {
   using Base = pcl::Filter<PointT>;

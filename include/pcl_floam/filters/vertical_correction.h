@@ -17,9 +17,10 @@ namespace pcl_floam {
 /// correction.setAngle(0.205);          // degrees: KITTI's HDL-64
 /// correction.filter(corrected);
 /// \endcode
-/// Points keep their order and all other fields; normals are turned with them. Points that are not finite, and those
-/// straight above or below the sensor, stay as they are. With indices set, the output holds just those points, in their
-/// order; an index that is none of the cloud's points makes `filter` throw std::invalid_argument.
+/// Points keep their order and all other fields; normals are turned with them. Points that are not finite, no
+/// returns (zero, or at the sensor) and those straight above or below it stay as they are. With indices set, the output
+/// holds just those points, in their order; an index that is none of the cloud's points makes `filter` throw
+/// std::invalid_argument.
 template <typename PointT>
 class VerticalCorrection : public pcl::Filter<PointT> {
   using Base = pcl::Filter<PointT>;

@@ -10,6 +10,9 @@
 
 namespace pcl_floam {
 
+/// What is nearer to the sensor is no return: its own place, as another frame's numbers round it. m
+inline constexpr double kNoReturnWithin = 1e-4;
+
 /// A copy of a cloud with x, y, z moved and all other fields as they are. Its memory is used again.
 class MovedCloud {
 public:
@@ -33,8 +36,7 @@ public:
   /// Whether a point is no return: zero in the clouds' frame, or at the sensor. Filters leave it where it is.
   [[nodiscard]] bool isNoReturn(const Eigen::Vector3f& point) const
   {
-    constexpr double kAtTheSensor = 1e-4;  // m: of the sensor's own place in another frame
-    return point.isZero(0.0F) || (point.cast<double>() - frame_T_sensor_.translation).norm() < kAtTheSensor;
+    return point.isZero(0.0F) || (point.cast<double>() - frame_T_sensor_.translation).norm() < kNoReturnWithin;
   }
 
   /// The cloud as the sensor sees it; valid until the next call.
