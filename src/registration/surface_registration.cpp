@@ -2,6 +2,7 @@
 
 #include "registration/locked_motions.h"
 #include "registration/net_information.h"
+#include "registration/surface_evidence.h"
 #include "registration/surface_residuals.h"
 
 #include <Eigen/Cholesky>
@@ -57,13 +58,13 @@ private:
   /// it.
   void weighEvidence(SurfaceRegistration& result)
   {
-    weighs_evidence_ = true;
+    SurfaceEvidence evidence{trajectory()};
+    evidence.threads = problem_.threads;
     if (problem_.evidence == Evidence::of_points) {
-      static_cast<void>(accumulate(0.0, 1));
-      result.point_evidence = room_.evidence;
+      static_cast<void>(evidence.of(problem_.scan, problem_.edges, room_.edges, &result.point_evidence));
     }
-    knows_lasers_ = false;
-    result.evidence = accumulate(0.0, 1).total().evidence;
+    evidence.knows_lasers = false;
+    result.evidence = evidence.of(problem_.scan, problem_.edges, room_.edges, nullptr);
   }
 
   SurfaceSums iterate(RegistrationReport& report)
@@ -201,14 +202,17 @@ private:
                                        : Vector6(Vector6::Zero());
   }
 
+  [[nodiscard]] SweepTrajectory trajectory() const
+  {
+    return SweepTrajectory(pose_, twist(), SweepTrajectory::kMiddle, acceleration());
+  }
+
   [[nodiscard]] SweepSums accumulate(double look, std::size_t stride)
   {
-    SurfaceResiduals residuals{SweepTrajectory(pose_, twist(), SweepTrajectory::kMiddle, acceleration())};
+    SurfaceResiduals residuals{trajectory()};
     residuals.reach = look * look * problem_.reach;
     residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
-    residuals.weighs_evidence = weighs_evidence_;
-    residuals.knows_lasers = knows_lasers_;
     residuals.threads = problem_.threads;
     return residuals.sumsOf(problem_.scan, problem_.edges, stride, room_);
   }
@@ -252,8 +256,6 @@ private:
   Vector6 velocity_;  // per period, in the sensor's axes
   Matrix12 prior_;
   double doubt_;  // m^2, of the guess
-  bool weighs_evidence_ = false;
-  bool knows_lasers_ = true;
   SurfaceRoom own_room_;
   SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration

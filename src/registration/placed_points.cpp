@@ -1,0 +1,96 @@
+#include "registration/placed_points.h"
+
+#include "map/surface_fit.h"
+
+#include <algorithm>
+
+namespace pcl_floam {
+
+namespace {
+
+/// How far a laser's direction is from the one it is said to have, one standard deviation in rad: half of the 0.07
+/// degrees that calibrations of spinning lidars find (Glennie and Lichti 2010; Glennie, Kusari and Facchin 2016). With
+/// all of it, far ground would count so little that cars that keep pace outweigh it.
+constexpr double kDirectionError = 6e-4;
+/// All of a laser's points share it: of a plane it is the fewest lasers that count, not their points.
+constexpr double kLasersOfAPlane = 3.0;
+
+using Lasers = std::array<std::uint32_t, PlacedPoints::kMost>;
+
+/// Looks for the surfaces of those points alone that are elsewhere than when they were found before: lines of edges,
+/// which are the same for all lasers.
+void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& lasers, FoundSurface* found)
+{
+  constexpr double kNegligible = 0.005;  // m: a quarter of what a return may be off
+  std::array<Eigen::Vector3d, PlacedPoints::kMost> moved;
+  Lasers lasers_of_moved;
+  std::array<std::size_t, PlacedPoints::kMost> which;
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < placed.count; ++i) {
+    const Eigen::Vector3d& place = placed.points[i].place;
+    if (!((place - found[i].at).squaredNorm() < kNegligible * kNegligible)) {
+      moved[n] = place;
+      lasers_of_moved[n] = lasers[i];
+      which[n++] = i;
+    }
+  }
+  if (n > 0) {
+    target.find(moved.data(), lasers_of_moved.data(), n, placed.surfaces.data());
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    found[which[k]] = {moved[k], placed.surfaces[k]};
+  }
+  for (std::size_t i = 0; i < placed.count; ++i) {
+    placed.surfaces[i] = found[i].surface;
+  }
+}
+
+}  // namespace
+
+std::size_t PlacedPoints::chunksOf(const SurfaceTerm& term, std::size_t stride)
+{
+  const bool is_given = term.points != nullptr && term.target != nullptr;
+  const std::size_t count = is_given ? (term.points->size() + stride - 1) / stride : 0;
+  return (count + kMost - 1) / kMost;
+}
+
+PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& term, std::size_t chunk,
+                           std::size_t stride, FoundSurface* found, bool knows_lasers)
+    : begin(chunk * kMost), count(std::min((term.points->size() + stride - 1) / stride - begin, kMost))
+{
+  std::array<Eigen::Vector3d, kMost> places;
+  Lasers lasers;
+  const ScanPoint* taken = term.points->data() + begin * stride;
+  sensor.undistorted(taken, stride, count, places.data());
+  const SE3& pose = sensor.pose();
+  for (std::size_t i = 0; i < count; ++i) {
+    const ScanPoint& point = taken[i * stride];
+    points[i].arm = pose.rotation * places[i];  // seen from mid-sweep
+    points[i].place = places[i] = pose.translation + points[i].arm;
+    points[i].since_middle = sensor.sinceReference(static_cast<double>(point.time));
+    points[i].run = pose.rotation * Eigen::Vector3f::Map(point.run.data()).cast<double>();
+    lasers[i] = knows_lasers ? point.laser : kNoLaser;
+  }
+  if (found == nullptr) {
+    term.target->find(places.data(), lasers.data(), count, surfaces.data());
+  } else {
+    findAgain(*term.target, *this, lasers, found + begin);
+  }
+}
+
+double varianceFrom(const Surface& plane, const PlacedPoint& point, double squared_distance)
+{
+  const double along = std::max(0.0, (point.place - plane.center).squaredNorm() - squared_distance);
+  const double lever = 1.0 + along / std::max(plane.extent, kNoExtent);
+  const double across = plane.direction.cross(point.arm).norm();
+  const double by_direction = kDirectionError * kDirectionError * across * across;
+  return kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
+         by_direction * (1.0 + lever / kLasersOfAPlane);
+}
+
+double varianceFrom(const Surface& line_or_point)
+{
+  return kRangeNoise * kRangeNoise + line_or_point.thickness;
+}
+
+}  // namespace pcl_floam

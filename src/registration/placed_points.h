@@ -1,0 +1,58 @@
+/// \file placed_points.h
+/// Points of a sweep where an estimate has them, and what the map has there.
+#pragma once
+
+#include "common/sweep_trajectory.h"
+#include "registration/surface_registration.h"
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace pcl_floam {
+
+/// A point where the present estimate has it.
+struct PlacedPoint {
+  Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
+  Eigen::Vector3d run = Eigen::Vector3d::Zero();    ///< \ref ScanPoint::run, in the target's axes
+  double since_middle = 0.0;                        ///< in sweeps
+};
+
+/// What was found at a place.
+struct FoundSurface {
+  Eigen::Vector3d at = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());  ///< nothing yet
+  Surface surface;
+};
+
+/// Some of them, and the surface at each.
+struct PlacedPoints {
+  static constexpr std::size_t kMost = 64;
+
+  /// The next ones of a term, one in so many.
+  /// \param found before, of all points of the term: those that have hardly moved keep it; nullptr: it is not kept
+  /// \param knows_lasers else a laser's own curve is a surface for its points, too
+  PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
+               FoundSurface* found, bool knows_lasers = true);
+
+  /// So many make up a term.
+  [[nodiscard]] static std::size_t chunksOf(const SurfaceTerm& term, std::size_t stride);
+
+  std::size_t begin = 0;  ///< of all that are taken
+  std::size_t count = 0;
+  std::array<PlacedPoint, kMost> points;
+  std::array<Surface, kMost> surfaces;
+};
+
+/// m^2: how far a point may be from a plane that it is on, D: range noise, the plane's thickness, and what points that
+/// are far from its middle make of its tilt.
+[[nodiscard]] double varianceFrom(const Surface& plane, const PlacedPoint& point, double squared_distance);
+
+/// m^2, from a line or a point.
+[[nodiscard]] double varianceFrom(const Surface& line_or_point);
+
+/// A shape has at least this variance along itself, m^2.
+inline constexpr double kNoExtent = 1e-9;
+
+}  // namespace pcl_floam

@@ -1,0 +1,65 @@
+#include "registration/surface_evidence.h"
+
+#include "common/pi.h"
+#include "registration/information_analysis.h"
+
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+namespace pcl_floam {
+
+namespace {
+
+/// A density, of all points that may be anywhere within a metre: so what fills its cell, and is near wherever the
+/// sensor is supposed to be, tells nothing, and what is in one place, more than what is in one plane.
+/// \param dimensions in which the surface tells where its points are: 1 for a plane, 2 for a line
+double evidenceOf(double squared, double variance, double dimensions)
+{
+  constexpr double kOutliers = 0.01;  // share of the points of which the map knows nothing
+  const double density = std::exp(-0.5 * (squared / variance + dimensions * std::log(2.0 * kPi * variance)));
+  return std::log(kOutliers + (1.0 - kOutliers) * density) / kResidualsPerIndependentOne;
+}
+
+double evidenceOf(const PlacedPoint& point, const Surface& surface)
+{
+  const Eigen::Vector3d off = point.place - surface.center;
+  const double along = surface.direction.dot(off);
+  switch (surface.kind) {
+    case SurfaceKind::plane: return evidenceOf(along * along, varianceFrom(surface, point, along * along), 1.0);
+    case SurfaceKind::line: return evidenceOf(off.squaredNorm() - along * along, varianceFrom(surface), 2.0);
+    case SurfaceKind::point:
+      return evidenceOf(off.dot(surface.felt * off), varianceFrom(surface), surface.felt.trace());
+    case SurfaceKind::unknown: break;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+double SurfaceEvidence::of(const SurfaceTerm& scan, const SurfaceTerm& edges, std::vector<FoundSurface>& found,
+                           std::vector<float>* of_points) const
+{
+  const std::size_t of_scan = PlacedPoints::chunksOf(scan, 1);
+  std::vector<double> parts(of_scan + PlacedPoints::chunksOf(edges, 1), 0.0);
+  if (of_points != nullptr) {
+    of_points->assign(scan.points->size(), 0.0F);
+  }
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
+    const auto c = static_cast<std::size_t>(part);
+    const bool is_edges = c >= of_scan;
+    const PlacedPoints placed(sensor, is_edges ? edges : scan, is_edges ? c - of_scan : c, 1,
+                              is_edges ? found.data() : nullptr, knows_lasers);
+    for (std::size_t i = 0; i < placed.count; ++i) {
+      const double evidence = evidenceOf(placed.points[i], placed.surfaces[i]);
+      parts[c] += evidence;
+      if (of_points != nullptr && !is_edges) {
+        (*of_points)[placed.begin + i] = static_cast<float>(evidence);
+      }
+    }
+  }
+  return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
+
+}  // namespace pcl_floam
