@@ -52,6 +52,15 @@ public:
   VoxelKey key;
   std::array<std::int32_t, kAround> around;
 
+  /// Whether it is a block of the layer, which knows itself; else its place waits for one.
+  [[nodiscard]] bool isUsed() const { return around[kItself] != kNone; }
+  void clear()
+  {
+    around.fill(kNone);
+    voxels_.clear();
+    groups_.clear();
+  }
+
   [[nodiscard]] std::size_t size() const { return voxels_.size(); }
   [[nodiscard]] Eigen::Vector3f point(std::size_t i) const
   {

@@ -38,6 +38,7 @@ VoxelLayer::VoxelLayer(const VoxelLayer& other)
       block_size_(other.block_size_),
       blocks_(other.blocks_, &memory_),
       numbers_(other.numbers_),
+      free_(other.free_),
       size_(other.size_)
 {
 }
@@ -76,11 +77,6 @@ std::int32_t VoxelLayer::findBlock(const VoxelKey& key) const
   return static_cast<std::int32_t>(numbers_.find(key.packed(0))) - 1;
 }
 
-void VoxelLayer::enterInTable(std::size_t block)
-{
-  numbers_.insert(blocks_[block].key.packed(0), static_cast<std::uint32_t>(block) + 1);
-}
-
 void VoxelLayer::link(std::int32_t block)
 {
   VoxelBlock& self = blocks_[static_cast<std::size_t>(block)];
@@ -104,11 +100,17 @@ std::int32_t VoxelLayer::findOrAddBlock(const VoxelKey& key)
   if (found != kNone) {
     return found;
   }
-  const std::size_t added = blocks_.size();
-  blocks_.emplace_back(key);
-  enterInTable(added);
-  link(static_cast<std::int32_t>(added));
-  return static_cast<std::int32_t>(added);
+  auto added = static_cast<std::int32_t>(blocks_.size());
+  if (free_.empty()) {
+    blocks_.emplace_back(key);
+  } else {
+    added = free_.back();
+    free_.pop_back();
+    blocks_[static_cast<std::size_t>(added)].key = key;
+  }
+  numbers_.insert(key.packed(0), static_cast<std::uint32_t>(added) + 1);
+  link(added);
+  return added;
 }
 
 void VoxelLayer::insert(const Eigen::Vector3d& point)
@@ -199,37 +201,31 @@ void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, const float* intens
   }
 }
 
+/// Those that stay are not touched: what goes is little, sweep by sweep.
 void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
 {
-  const auto isFar = [&](const VoxelBlock& block) {
-    const Eigen::Vector3d middle =
-        block_size_ * (Eigen::Vector3d(block.key.x, block.key.y, block.key.z).array() + 0.5).matrix();
-    return (middle - center).squaredNorm() > radius * radius;
-  };
-  // Where each block goes; those that stay keep their order.
-  std::int32_t kept = 0;
-  for (VoxelBlock& block : blocks_) {
-    block.around[VoxelBlock::kItself] = isFar(block) ? kNone : kept++;
-  }
-  if (static_cast<std::size_t>(kept) == blocks_.size()) {
-    return;
-  }
-  for (VoxelBlock& block : blocks_) {
-    for (std::size_t place = 0; place < VoxelBlock::kAround; ++place) {
-      std::int32_t& other = block.around[place];
-      if (place != VoxelBlock::kItself && other != kNone) {
-        other = blocks_[static_cast<std::size_t>(other)].around[VoxelBlock::kItself];
-      }
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    const VoxelKey& key = blocks_[b].key;
+    const Eigen::Vector3d middle = block_size_ * (Eigen::Vector3d(key.x, key.y, key.z).array() + 0.5).matrix();
+    if ((middle - center).squaredNorm() > radius * radius && blocks_[b].isUsed()) {
+      release(static_cast<std::int32_t>(b));
     }
   }
-  const auto goes = [](const VoxelBlock& block) { return block.around[VoxelBlock::kItself] == kNone; };
-  blocks_.erase(std::remove_if(blocks_.begin(), blocks_.end(), goes), blocks_.end());
-  numbers_.clear();
-  size_ = 0;
-  for (std::size_t b = 0; b < blocks_.size(); ++b) {
-    enterInTable(b);
-    size_ += blocks_[b].size();
+}
+
+void VoxelLayer::release(std::int32_t block)
+{
+  VoxelBlock& self = blocks_[static_cast<std::size_t>(block)];
+  for (std::size_t place = 0; place < VoxelBlock::kAround; ++place) {
+    const std::int32_t other = self.around[place];
+    if (other != kNone) {
+      blocks_[static_cast<std::size_t>(other)].around[VoxelBlock::kAround - 1 - place] = kNone;
+    }
   }
+  size_ -= self.size();
+  numbers_.erase(self.key.packed(0));
+  self.clear();
+  free_.push_back(block);
 }
 
 std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& world_T_sensor, double radius, int threads)
@@ -265,6 +261,7 @@ std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& wor
 void VoxelLayer::clear()
 {
   blocks_.clear();
+  free_.clear();
   size_ = 0;
   numbers_.clear();
 }

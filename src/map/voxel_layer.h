@@ -84,9 +84,9 @@ private:
   std::int32_t findOrAddBlock(const VoxelKey& key);
   void insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count);
   void insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads);
-  void enterInTable(std::size_t block);
   /// Makes a block and those around it known to each other.
   void link(std::int32_t block);
+  void release(std::int32_t block);
 
   /// The k nearest, where the blocks around the query's own reach as far as the search does.
   /// \param home the query's own block, or kNone
@@ -103,6 +103,7 @@ private:
   ArrayPool memory_;
   std::pmr::vector<VoxelBlock> blocks_{&memory_};
   VoxelTable numbers_;               ///< of the blocks, from 1
+  std::vector<std::int32_t> free_;   ///< blocks that were forgotten
   std::vector<BlockQuery> places_;   ///< of the last points that threads shared ...
   std::vector<std::int32_t> homes_;  ///< ... and their blocks
   std::size_t size_ = 0;

@@ -13,7 +13,7 @@ namespace pcl_floam {
 namespace {
 
 /// What was known of the velocity tells nothing there.
-SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const Doubt& doubt)
+SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const Doubt& doubt, Evidence evidence)
 {
   problem.prior.pose = guess;
   problem.prior.velocity.setZero();
@@ -21,7 +21,7 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   problem.prior.periods_between = 0.0;
   problem.prior.pose_counts = false;
   problem.reach = reachOf(doubt);
-  problem.evidence = Evidence::total;
+  problem.evidence = evidence;
   problem.is_rival = true;
   return registerSurfaces(problem);
 }
@@ -50,7 +50,7 @@ Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt
   constexpr int kRounds = 4;
   SE3 pose = guess;
   for (int round = 0; round < kRounds; ++round, doubt.far *= 0.5, doubt.turned *= 0.5) {
-    pose = registerFrom(expected, pose, doubt).report.target_T_source;  // that failed: where it began
+    pose = registerFrom(expected, pose, doubt, Evidence::none).report.target_T_source;  // that failed: where it began
   }
   return {pose, doubt};
 }
@@ -62,7 +62,7 @@ std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector
   SurfaceRegistration best = registerSurfaces(weighed);
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {
-    SurfaceRegistration found = registerFrom(expected, guess, doubt);
+    SurfaceRegistration found = registerFrom(expected, guess, doubt, Evidence::total);
     if (isBetter(found, best)) {
       best = std::move(found);
       place = best.report.target_T_source;

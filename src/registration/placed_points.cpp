@@ -19,7 +19,9 @@ using Lasers = std::array<std::uint32_t, PlacedPoints::kMost>;
 
 /// Looks for the surfaces of those points alone that are elsewhere than when they were found before: lines of edges,
 /// which are the same for all lasers.
-void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& lasers, FoundSurface* found)
+/// \param found of the first one and each \p stride after it
+void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& lasers, std::size_t stride,
+               FoundSurface* found)
 {
   constexpr double kNegligible = 0.005;  // m: a quarter of what a return may be off
   std::array<Eigen::Vector3d, PlacedPoints::kMost> moved;
@@ -28,10 +30,10 @@ void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& 
   std::size_t n = 0;
   for (std::size_t i = 0; i < placed.count; ++i) {
     const Eigen::Vector3d& place = placed.points[i].place;
-    if (!((place - found[i].at).squaredNorm() < kNegligible * kNegligible)) {
+    if (!((place - found[i * stride].at).squaredNorm() < kNegligible * kNegligible)) {
       moved[n] = place;
       lasers_of_moved[n] = lasers[i];
-      which[n++] = i;
+      which[n++] = i * stride;
     }
   }
   if (n > 0) {
@@ -41,7 +43,7 @@ void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& 
     found[which[k]] = {moved[k], placed.surfaces[k]};
   }
   for (std::size_t i = 0; i < placed.count; ++i) {
-    placed.surfaces[i] = found[i].surface;
+    placed.surfaces[i] = found[i * stride].surface;
   }
 }
 
@@ -65,25 +67,25 @@ PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& ter
   const SE3& pose = sensor.pose();
   for (std::size_t i = 0; i < count; ++i) {
     const ScanPoint& point = taken[i * stride];
+    points[i].measured = &point;
     points[i].arm = pose.rotation * places[i];  // seen from mid-sweep
     points[i].place = places[i] = pose.translation + points[i].arm;
     points[i].since_middle = sensor.sinceReference(static_cast<double>(point.time));
-    points[i].run = pose.rotation * Eigen::Vector3f::Map(point.run.data()).cast<double>();
     lasers[i] = knows_lasers ? point.laser : kNoLaser;
   }
   if (found == nullptr) {
     term.target->find(places.data(), lasers.data(), count, surfaces.data());
   } else {
-    findAgain(*term.target, *this, lasers, found + begin);
+    findAgain(*term.target, *this, lasers, stride, found + begin * stride);
   }
 }
 
-double varianceFrom(const Surface& plane, const PlacedPoint& point, double squared_distance)
+double varianceFrom(const Surface& plane, const PlacedPoint& point, const Eigen::Vector3d& turn,
+                    double squared_distance)
 {
   const double along = std::max(0.0, (point.place - plane.center).squaredNorm() - squared_distance);
   const double lever = 1.0 + along / std::max(plane.extent, kNoExtent);
-  const double across = plane.direction.cross(point.arm).norm();
-  const double by_direction = kDirectionError * kDirectionError * across * across;
+  const double by_direction = kDirectionError * kDirectionError * turn.squaredNorm();
   return kRangeNoise * kRangeNoise + plane.thickness * (1.0 + lever / plane.count) +
          by_direction * (1.0 + lever / kLasersOfAPlane);
 }

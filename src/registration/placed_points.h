@@ -14,10 +14,10 @@ namespace pcl_floam {
 
 /// A point where the present estimate has it.
 struct PlacedPoint {
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();    ///< from the sensor
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the target's frame
-  Eigen::Vector3d run = Eigen::Vector3d::Zero();    ///< \ref ScanPoint::run, in the target's axes
-  double since_middle = 0.0;                        ///< in sweeps
+  const ScanPoint* measured;
+  Eigen::Vector3d arm;    ///< from the sensor, in the target's axes
+  Eigen::Vector3d place;  ///< in the target's frame
+  double since_middle;    ///< in sweeps
 };
 
 /// What was found at a place.
@@ -45,9 +45,11 @@ struct PlacedPoints {
   std::array<Surface, kMost> surfaces;
 };
 
-/// m^2: how far a point may be from a plane that it is on, D: range noise, the plane's thickness, and what points that
+/// m^2: how far a point may be from a plane that it is on: range noise, the plane's thickness, and what points that
 /// are far from its middle make of its tilt.
-[[nodiscard]] double varianceFrom(const Surface& plane, const PlacedPoint& point, double squared_distance);
+/// \param turn arm x direction
+[[nodiscard]] double varianceFrom(const Surface& plane, const PlacedPoint& point, const Eigen::Vector3d& turn,
+                                  double squared_distance);
 
 /// m^2, from a line or a point.
 [[nodiscard]] double varianceFrom(const Surface& line_or_point);

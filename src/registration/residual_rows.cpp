@@ -78,20 +78,26 @@ void addUntimedProducts(const double* a, const double* b, const double* c, const
 
 }  // namespace
 
-void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
-                       double since_middle)
+void ResidualRows::add(const Vector6& derivative, double residual, double weight, double since_middle)
 {
-  const Eigen::Vector3d turn = arm.cross(normal);
-  for (std::size_t i = 0; i < 3; ++i) {
-    column_[i][size_] = normal[static_cast<Eigen::Index>(i)];
-    column_[i + 3][size_] = turn[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < kResidual; ++i) {
+    column_[i][size_] = derivative[static_cast<Eigen::Index>(i)];
   }
   column_[kResidual][size_] = residual;
   weight_[0][size_] = weight;
   weight_[1][size_] = since_middle * weight;
   weight_[2][size_] = since_middle * since_middle * weight;
   is_timed_ = is_timed_ || since_middle != 0.0;
+  has_residuals_ = has_residuals_ || residual != 0.0;
   ++size_;
+}
+
+void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
+                       double since_middle)
+{
+  Vector6 derivative;
+  derivative << normal, arm.cross(normal);
+  add(derivative, residual, weight, since_middle);
 }
 
 /// M = sum d u u^T (LDL^T).
@@ -113,13 +119,14 @@ void ResidualRows::add(const Eigen::Matrix3d& m, const Eigen::Vector3d& differen
 void ResidualRows::addTo(NormalEquations& equations)
 {
   while (size_ % kLanes != 0) {
-    add(Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0, 0.0, 0.0);
+    add(Vector6::Zero(), 0.0, 0.0, 0.0);
   }
   const std::array<const double*, 3> weights = {weight_[0].data(), weight_[1].data(), weight_[2].data()};
   std::array<ThreeSums, kColumns + 1> sums{};
+  const std::size_t columns = has_residuals_ ? kColumns : kResidual;
   const auto addAll = is_timed_ ? addTimedProducts : addUntimedProducts;
   for (std::size_t i = 0; i < kResidual; ++i) {
-    for (std::size_t j = i; j < kColumns; j += 2) {
+    for (std::size_t j = i; j < columns; j += 2) {
       const double* next = column_[std::min(j + 1, kResidual)].data();
       addAll(column_[i].data(), column_[j].data(), next, weights, size_, sums[j], sums[j + 1]);
     }

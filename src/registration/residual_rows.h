@@ -15,6 +15,8 @@ class ResidualRows {
 public:
   static constexpr std::size_t kRoom = 192;
 
+  /// \param derivative J, by the pose
+  void add(const Vector6& derivative, double residual, double weight, double since_middle);
   /// \param arm from the local origin to the point
   void add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm, double residual, double weight,
            double since_middle);
@@ -34,7 +36,8 @@ private:
   static constexpr std::size_t kColumns = 7;
 
   std::size_t size_ = 0;
-  bool is_timed_ = false;  ///< else all were measured at the pose's instant
+  bool is_timed_ = false;       ///< else all were measured at the pose's instant
+  bool has_residuals_ = false;  ///< else all are zero
   std::array<Column, kColumns> column_;
   std::array<Column, 3> weight_;  ///< times the time since mid-sweep to the power of 0, 1, 2
 };

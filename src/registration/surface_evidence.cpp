@@ -26,7 +26,10 @@ double evidenceOf(const PlacedPoint& point, const Surface& surface)
   const Eigen::Vector3d off = point.place - surface.center;
   const double along = surface.direction.dot(off);
   switch (surface.kind) {
-    case SurfaceKind::plane: return evidenceOf(along * along, varianceFrom(surface, point, along * along), 1.0);
+    case SurfaceKind::plane: {
+      const Eigen::Vector3d turn = point.arm.cross(surface.direction);
+      return evidenceOf(along * along, varianceFrom(surface, point, turn, along * along), 1.0);
+    }
     case SurfaceKind::line: return evidenceOf(off.squaredNorm() - along * along, varianceFrom(surface), 2.0);
     case SurfaceKind::point:
       return evidenceOf(off.dot(surface.felt * off), varianceFrom(surface), surface.felt.trace());

@@ -35,7 +35,8 @@ public:
       : problem_(problem),
         pose_(problem.prior.pose),
         velocity_(problem.prior.velocity),
-        prior_(problem.prior.information()),
+        of_prior_(problem.prior.information()),
+        prior_(of_prior_),
         doubt_(problem.reach.topLeftCorner<3, 3>().trace()),
         room_(problem.room != nullptr ? *problem.room : own_room_)
   {
@@ -61,7 +62,7 @@ private:
     SurfaceEvidence evidence{trajectory()};
     evidence.threads = problem_.threads;
     if (problem_.evidence == Evidence::of_points) {
-      static_cast<void>(evidence.of(problem_.scan, problem_.edges, room_.edges, &result.point_evidence));
+      static_cast<void>(evidence.of(problem_.scan, SurfaceTerm(), room_.edges, &result.point_evidence));
     }
     evidence.knows_lasers = false;
     result.evidence = evidence.of(problem_.scan, problem_.edges, room_.edges, nullptr);
@@ -182,7 +183,7 @@ private:
     }
     strong_ = Matrix6::Identity() - untold.onto;
     weak_ = untold.directions;
-    prior_ = problem_.prior.apartFrom(untold.onto).information();
+    prior_ = untold.onto.isZero(0.0) ? of_prior_ : problem_.prior.apartFrom(untold.onto).information();
     return told;
   }
 
@@ -254,8 +255,9 @@ private:
   const SurfaceProblem& problem_;
   SE3 pose_;
   Vector6 velocity_;  // per period, in the sensor's axes
-  Matrix12 prior_;
-  double doubt_;  // m^2, of the guess
+  const Matrix12 of_prior_;
+  Matrix12 prior_;  // apart from what is not told
+  double doubt_;    // m^2, of the guess
   SurfaceRoom own_room_;
   SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration

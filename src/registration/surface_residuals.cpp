@@ -29,6 +29,14 @@ double feltAlongRun(double squared_run, double variance)
   return std::sqrt(variance / (variance + squared_run / kEven));
 }
 
+/// n^T [I, -[arm]x] (Eq. 11, 13, 14).
+Vector6 derivativeAlong(const Eigen::Vector3d& normal, const PlacedPoint& point)
+{
+  Vector6 derivative;
+  derivative << normal, point.arm.cross(normal);
+  return derivative;
+}
+
 template <typename Iterator>
 SurfaceSums totalOf(Iterator begin, Iterator end)
 {
@@ -50,12 +58,12 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& e
 {
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
-  parts.resize(of_scan + PlacedPoints::chunksOf(edges, 1));
+  parts.resize(of_scan + PlacedPoints::chunksOf(edges, stride));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
     const auto c = static_cast<std::size_t>(part);
     parts[c] = chunkOf(c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
-                                   : PlacedPoints(sensor, edges, c - of_scan, 1, room.edges.data()));
+                                   : PlacedPoints(sensor, edges, c - of_scan, stride, room.edges.data()));
   }
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
@@ -85,20 +93,27 @@ SurfaceSums SurfaceResiduals::chunkOf(const PlacedPoints& placed) const
   return sums;
 }
 
+/// In the target's axes.
+Eigen::Vector3d SurfaceResiduals::runOf(const PlacedPoint& point) const
+{
+  return sensor.pose().rotation * Eigen::Vector3f::Map(point.measured->run.data()).cast<double>();
+}
+
 /// Eq. 7, and Eq. 14 with the plane's normal.
 void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
                                 SurfaceSums& sums) const
 {
   const double r = plane.direction.dot(p.place - plane.center);
   const double extent = std::max(plane.extent, kNoExtent);
-  const double w = weight(r * r, varianceFrom(plane, p, r * r), plane.direction, p, sums);
-  rows.add(plane.direction, p.arm, r, w, periods * p.since_middle);
+  const Vector6 derivative = derivativeAlong(plane.direction, p);
+  const double w = weight(r * r, varianceFrom(plane, p, derivative.tail<3>(), r * r), derivative, p, sums);
+  rows.add(derivative, r, w, periods * p.since_middle);
   // Three points go into the plane; its thickness is what noise leaves to the others.
   const double by_noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
   const bool is_wide = plane.width > 0.0;
   const Eigen::Vector3d wide = is_wide ? plane.wide : Eigen::Vector3d(plane.direction.unitOrthogonal());
-  noise.add(wide, p.arm, 0.0, by_noise / (is_wide ? plane.width : extent), 0.0);
-  noise.add(plane.direction.cross(wide), p.arm, 0.0, by_noise / extent, 0.0);
+  noise.add(derivativeAlong(wide, p), 0.0, by_noise / (is_wide ? plane.width : extent), 0.0);
+  noise.add(derivativeAlong(plane.direction.cross(wide), p), 0.0, by_noise / extent, 0.0);
   ++sums.equations.planes;
 }
 
@@ -108,7 +123,8 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
 {
   const double variance = varianceFrom(line);
   const Eigen::Vector3d from_center = p.place - line.center;
-  const Eigen::Vector3d run = p.run - line.direction * line.direction.dot(p.run);
+  const Eigen::Vector3d whole_run = runOf(p);
+  const Eigen::Vector3d run = whole_run - line.direction * line.direction.dot(whole_run);
   const double squared_run = run.squaredNorm();
   const bool has_run = squared_run > kNoExtent;
   const Eigen::Vector3d other = has_run ? line.direction.cross(run).normalized() : line.direction.unitOrthogonal();
@@ -118,16 +134,16 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double squared = first * first + second * second;
   const Eigen::Vector3d off =
       squared > 0.0 ? Eigen::Vector3d((first * other + second * along) / std::sqrt(squared)) : other;
-  const double w = weight(squared, variance, off, p, sums);
-  rows.add(other, p.arm, first, w, periods * p.since_middle);
-  rows.add(along, p.arm, second, w, periods * p.since_middle);
+  const double w = weight(squared, variance, derivativeAlong(off, p), p, sums);
+  rows.add(derivativeAlong(other, p), first, w, periods * p.since_middle);
+  rows.add(derivativeAlong(along, p), second, w, periods * p.since_middle);
   // Two points go into the line; its direction may be off to two sides.
   const double count = std::max(1.0, static_cast<double>(line.count));
   const double by_noise = w * (line.thickness + 2.0 * kRangeNoise * kRangeNoise / count) / count;
   const double tilt = 2.0 * by_noise / std::max(line.extent, kNoExtent);
   for (const Eigen::Vector3d& axis :
        {Eigen::Vector3d(line.direction), other, Eigen::Vector3d(other.cross(line.direction))}) {
-    noise.add(axis, p.arm, 0.0, tilt, 0.0);
+    noise.add(derivativeAlong(axis, p), 0.0, tilt, 0.0);
   }
   ++sums.equations.edges;
 }
@@ -136,33 +152,31 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
   const double variance = varianceFrom(near);
-  const double squared_run = p.run.squaredNorm();
+  const Eigen::Vector3d run = runOf(p);
+  const double squared_run = run.squaredNorm();
   const Eigen::Vector3d off = p.place - near.center;
   Eigen::Vector3d seen = off;
   Eigen::Matrix3d felt = near.felt;
   if (squared_run > kNoExtent) {  // S off and S felt S with S = 1 - (1 - k) run run^T / |run|^2
     const double k = feltAlongRun(squared_run, variance);
     const double unfelt = (1.0 - k) / squared_run;
-    const Eigen::Vector3d along = unfelt * (felt * p.run);
-    felt -=
-        along * p.run.transpose() + p.run * along.transpose() - unfelt * along.dot(p.run) * p.run * p.run.transpose();
-    seen -= unfelt * p.run.dot(off) * p.run;
+    const Eigen::Vector3d along = unfelt * (felt * run);
+    felt -= along * run.transpose() + run * along.transpose() - unfelt * along.dot(run) * run * run.transpose();
+    seen -= unfelt * run.dot(off) * run;
   }
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
-  const double w = weight(length * length, variance, direction, p, sums);
+  const double w = weight(length * length, variance, derivativeAlong(direction, p), p, sums);
   ++sums.equations.points;
   rows.add(felt, off, p.arm, w, periods * p.since_middle);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
-double SurfaceResiduals::weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
+double SurfaceResiduals::weight(double squared, double variance, const Vector6& derivative, const PlacedPoint& p,
                                 SurfaceSums& sums) const
 {
   constexpr double kFits = 3.0;  // standard deviations
-  Eigen::Matrix<double, 6, 1> row;
-  row << direction, p.arm.cross(direction);
-  const double width = kKernelWidth * kKernelWidth * (variance + row.dot(reach * row));
+  const double width = kKernelWidth * kKernelWidth * (variance + derivative.dot(reach * derivative));
   const double ratio = width / (width + squared);
   const double robust = ratio * ratio;
   sums.equations.cost += 0.5 * robust * squared / variance;

@@ -48,7 +48,7 @@ struct SurfaceResiduals {
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
-  /// \param stride one of the scan's points in so many
+  /// \param stride one of the points in so many
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
                                  SurfaceRoom& room) const;
 
@@ -59,7 +59,8 @@ private:
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, ResidualRows& noise,
                SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
-  [[nodiscard]] double weight(double squared, double variance, const Eigen::Vector3d& direction, const PlacedPoint& p,
+  [[nodiscard]] Eigen::Vector3d runOf(const PlacedPoint& point) const;
+  [[nodiscard]] double weight(double squared, double variance, const Vector6& derivative, const PlacedPoint& p,
                               SurfaceSums& sums) const;
 };
 
