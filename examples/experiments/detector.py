@@ -105,7 +105,7 @@ def judged(estimate, truth, verdicts):
             "right_lost": count(False, "lost"), "right_unseen": unseen, "right_doubted": count(False, "doubtful"),
             "within": sum(within),
             "explained_of_wrong": figure("explained", True), "explained_of_right": figure("explained", False),
-            "told_of_wrong": figure("told_deviation_m", True), "told_of_right": figure("told_deviation_m", False)}
+            "told_of_wrong": figure("scan_only_deviation_m", True), "told_of_right": figure("scan_only_deviation_m", False)}
 
 
 def judge_run(run):

@@ -33,7 +33,7 @@ std::string timingColumns()
 }
 
 constexpr const char* kScanColumns =
-    "scan,state,provisional,explained,told_deviation_m,weak_directions,covariance_xx_m2,covariance_xy_m2,"
+    "scan,state,provisional,explained,scan_only_deviation_m,weak_directions,covariance_xx_m2,covariance_xy_m2,"
     "covariance_xz_m2,covariance_yy_m2,covariance_yz_m2,covariance_zz_m2,reason";
 
 /// As CSV has it: quotation marks within are doubled.
@@ -105,7 +105,8 @@ void ResultWriter::writeStageTimes(std::size_t scan, const StageTimes& times)
 void ResultWriter::writeVerdict(std::size_t scan, const OdometryReport& report)
 {
   scans_.row() << scan << ',' << toString(report.state) << ',' << (report.provisional ? 1 : 0) << ','
-               << report.explained << ',' << report.told_deviation << ',' << report.registration.weak_directions.size();
+               << report.explained << ',' << report.scan_only_deviation << ','
+               << report.registration.weak_directions.size();
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index k = i; k < 3; ++k) {
       scans_.row() << ',' << report.covariance(i, k);

@@ -34,13 +34,13 @@ Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
 
 /// What fills a cell evenly goes on beyond it, and tells nothing of the way along it: its variance is the squared side
 /// over 12.
-Eigen::Matrix3d feltAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& variance, double side)
+Eigen::Matrix3d observabilityAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& variance, double side)
 {
   constexpr double kEven = 12.0;
   constexpr double kChance = 1.25;  // as few points vary by chance
   const Eigen::Array3d filled = kEven / (side * side) * variance.array();
-  const Eigen::Vector3d felt = (1.0 - kChance * filled).max(0.0);
-  return axes * felt.asDiagonal() * axes.transpose();
+  const Eigen::Vector3d shown = (1.0 - kChance * filled).max(0.0);
+  return axes * shown.asDiagonal() * axes.transpose();
 }
 
 std::array<float, 3> single(const Eigen::Vector3d& v)
@@ -94,7 +94,8 @@ CellFit fitOf(const CellSums& sums, double side)
     fit.kind = SurfaceKind::unknown;
   } else {
     fit.kind = SurfaceKind::point;
-    Eigen::Map<Eigen::Matrix3f>(fit.along.data()) = feltAmong(eigen.eigenvectors(), variance, side).cast<float>();
+    Eigen::Map<Eigen::Matrix3f>(fit.along.data()) =
+        observabilityAmong(eigen.eigenvectors(), variance, side).cast<float>();
   }
   return fit;
 }

@@ -35,8 +35,8 @@ struct CellShape {
 struct CellFit {
   SurfaceKind kind = SurfaceKind::unknown;
   CellShape shape;
-  /// Of what is neither plane nor line, which displacements are felt among its points (\ref Surface::felt); of a plane
-  /// its longer direction and the variance along that.
+  /// Of what is neither plane nor line, which displacements show among its points (\ref Surface::observability); of a
+  /// plane its longer direction and the variance along that.
   std::array<float, 9> along{};
 };
 

@@ -12,9 +12,6 @@ namespace {
 
 constexpr std::int32_t kNone = VoxelBlock::kNone;
 
-/// Block numbers stay below this, with room to step to neighbours: 32 bits hold twice as many.
-constexpr double kMaxBlockNumber = 1e9;
-
 /// As many voxels along a block's edge as make it a metre: neighbours are searched about that far.
 int voxelsPerAxis(double voxel_size)
 {
@@ -27,15 +24,17 @@ int voxelsPerAxis(double voxel_size)
 
 VoxelLayer::VoxelLayer(double voxel_size)
     : voxels_per_axis_(voxelsPerAxis(voxel_size)),
-      voxel_size_(static_cast<float>(voxel_size)),
-      block_size_(voxel_size * voxels_per_axis_)
+      inverse_voxel_size_(static_cast<float>(1.0 / voxel_size)),
+      block_size_(voxel_size * voxels_per_axis_),
+      inverse_block_size_(1.0 / block_size_)
 {
 }
 
 VoxelLayer::VoxelLayer(const VoxelLayer& other)
     : voxels_per_axis_(other.voxels_per_axis_),
-      voxel_size_(other.voxel_size_),
+      inverse_voxel_size_(other.inverse_voxel_size_),
       block_size_(other.block_size_),
+      inverse_block_size_(other.inverse_block_size_),
       blocks_(other.blocks_, &memory_),
       numbers_(other.numbers_),
       free_(other.free_),
@@ -43,30 +42,22 @@ VoxelLayer::VoxelLayer(const VoxelLayer& other)
 {
 }
 
-bool VoxelLayer::isRepresentable(const Eigen::Vector3d& point) const
+bool VoxelLayer::findPlace(const Eigen::Vector3d& point, BlockQuery& place) const
 {
-  return (point.array().abs() < kMaxBlockNumber * block_size_).all();  // false for NaN, too
-}
-
-VoxelKey VoxelLayer::keyOf(const Eigen::Vector3d& point) const
-{
-  return {static_cast<std::int32_t>(std::floor(point.x() / block_size_)),
-          static_cast<std::int32_t>(std::floor(point.y() / block_size_)),
-          static_cast<std::int32_t>(std::floor(point.z() / block_size_))};
-}
-
-VoxelLayer::BlockQuery VoxelLayer::blockQuery(const Eigen::Vector3d& query) const
-{
-  const VoxelKey key = keyOf(query);
+  if (!findKey(point, inverse_block_size_, place.key)) {
+    return false;
+  }
   // In double: the subtraction takes away the kilometres, what is left fits a float.
-  return {key, (query - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>(), 0.0F};
+  const VoxelKey& key = place.key;
+  place.offset = (point - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>();
+  return true;
 }
 
 std::uint32_t VoxelLayer::voxelAt(const Eigen::Vector3f& offset) const
 {
   int voxel = 0;
   for (int axis = 2; axis >= 0; --axis) {
-    const int cell = static_cast<int>(offset[axis] / voxel_size_);
+    const int cell = static_cast<int>(offset[axis] * inverse_voxel_size_);
     voxel = voxel * voxels_per_axis_ + std::clamp(cell, 0, voxels_per_axis_ - 1);
   }
   return static_cast<std::uint32_t>(voxel);
@@ -120,8 +111,8 @@ void VoxelLayer::insert(const Eigen::Vector3d& point)
 
 void VoxelLayer::insertMean(const Eigen::Vector3d& point, float intensity)
 {
-  if (isRepresentable(point)) {
-    const BlockQuery place = blockQuery(point);
+  BlockQuery place;
+  if (findPlace(point, place)) {
     VoxelBlock& block = blocks_[static_cast<std::size_t>(findOrAddBlock(place.key))];
     size_ += block.add(voxelAt(place.offset), place.offset, intensity, VoxelBlock::kMaxAveraged) ? 1 : 0;
   }
@@ -145,10 +136,8 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, const float* intens
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(count); ++n) {
     const auto i = static_cast<std::size_t>(n);
-    const bool representable = isRepresentable(points[i]);
-    places_[i] = representable ? blockQuery(points[i]) : BlockQuery{};
+    homes_[i] = findPlace(points[i], places_[i]) ? findBlock(places_[i].key) : kNowhere;
     places_[i].intensity = intensities != nullptr ? intensities[i] : 0.0F;
-    homes_[i] = representable ? findBlock(places_[i].key) : kNowhere;
   }
   for (std::size_t i = 0; i < count; ++i) {
     homes_[i] = homes_[i] == kNone ? findOrAddBlock(places_[i].key) : homes_[i];
@@ -179,8 +168,7 @@ void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, const float* intens
   for (std::size_t first = 0; first < count; first += kTogether) {
     std::size_t together = 0;
     for (std::size_t i = first; i < std::min(first + kTogether, count); ++i) {
-      if (isRepresentable(points[i])) {
-        places[together] = blockQuery(points[i]);
+      if (findPlace(points[i], places[together])) {
         places[together].intensity = intensities != nullptr ? intensities[i] : 0.0F;
         numbers_.expect(places[together].key.packed(0));
         ++together;

@@ -74,10 +74,8 @@ private:
     float intensity = 0.0F;                            ///< of a point that is inserted
   };
 
-  /// Finite, and its block's number fits 32 bits: within a billion blocks of the origin.
-  [[nodiscard]] bool isRepresentable(const Eigen::Vector3d& point) const;
-  [[nodiscard]] VoxelKey keyOf(const Eigen::Vector3d& point) const;
-  [[nodiscard]] BlockQuery blockQuery(const Eigen::Vector3d& query) const;
+  /// \return whether there can be one: finite, and within a billion blocks of the origin
+  bool findPlace(const Eigen::Vector3d& point, BlockQuery& place) const;
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
 
   [[nodiscard]] std::int32_t findBlock(const VoxelKey& key) const;
@@ -98,8 +96,9 @@ private:
   void visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const;
 
   int voxels_per_axis_;
-  float voxel_size_;
+  float inverse_voxel_size_;
   double block_size_;
+  double inverse_block_size_;
   ArrayPool memory_;
   std::pmr::vector<VoxelBlock> blocks_{&memory_};
   VoxelTable numbers_;               ///< of the blocks, from 1

@@ -115,11 +115,11 @@ void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit
 void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const
 {
   neighbors.count = 0;
-  if (!isRepresentable(query)) {
+  BlockQuery place;
+  if (!findPlace(query, place)) {
     return;
   }
   NearestSoFar nearest(k, static_cast<float>(radius * radius));
-  const BlockQuery place = blockQuery(query);
   if (radius <= block_size_) {
     searchAround(place, findBlock(place.key), nearest);
   } else {
@@ -141,16 +141,16 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
   // the next one will read.
   constexpr std::size_t kTogether = 16;
   std::array<BlockQuery, kTogether> places;
+  std::array<bool, kTogether> is_there{};
   std::array<std::int32_t, kTogether> homes;
   for (std::size_t first = 0; first < count; first += kTogether) {
     const std::size_t together = std::min(kTogether, count - first);
     for (std::size_t i = 0; i < together; ++i) {
-      const Eigen::Vector3d& query = queries[first + i];
-      places[i] = isRepresentable(query) ? blockQuery(query) : BlockQuery{};
+      is_there[i] = findPlace(queries[first + i], places[i]);
       numbers_.expect(places[i].key.packed(0));
     }
     for (std::size_t i = 0; i < together; ++i) {
-      homes[i] = findBlock(places[i].key);
+      homes[i] = is_there[i] ? findBlock(places[i].key) : VoxelBlock::kNone;
       if (homes[i] != VoxelBlock::kNone) {
         prefetch(&blocks_[static_cast<std::size_t>(homes[i])], sizeof(VoxelBlock));
       }
@@ -162,7 +162,7 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
     }
     for (std::size_t i = 0; i < together; ++i) {
       neighbors[first + i].count = 0;
-      if (isRepresentable(queries[first + i])) {
+      if (is_there[i]) {
         NearestSoFar nearest(k, static_cast<float>(radius * radius));
         searchAround(places[i], homes[i], nearest);
         nearest.write(neighbors[first + i], &VoxelBlock::point);
@@ -174,12 +174,13 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
 void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const
 {
   neighbors.clear();
-  if (!isRepresentable(query)) {
+  BlockQuery place;
+  if (!findPlace(query, place)) {
     return;
   }
   const auto limit = static_cast<float>(radius * radius);
   visitBlocks(
-      blockQuery(query), radius, [limit] { return limit; },
+      place, radius, [limit] { return limit; },
       [&](const Eigen::Vector3f& corner, const VoxelBlock& block) {
         for (std::size_t i = 0; i < block.size(); ++i) {
           const Eigen::Vector3f offset = corner + block.point(i);

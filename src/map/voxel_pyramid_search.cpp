@@ -109,7 +109,7 @@ void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Su
     surface.direction.setZero();
     surface.thickness = static_cast<double>(squared_spacing_);
     surface.extent = 0.0;
-    surface.felt = Eigen::Map<const Eigen::Matrix3f>(fit.along.data()).cast<double>();
+    surface.observability = Eigen::Map<const Eigen::Matrix3f>(fit.along.data()).cast<double>();
     return;
   }
   surface.center = block + Eigen::Vector3f(shape.mean.data()).cast<double>();

@@ -21,7 +21,7 @@ CandidateMotions::CandidateMotions(const std::vector<Sweep>& kept, const TrackSe
     : search_(kept[0], kept[1], settings),
       directions_(eachDirection(settings, kept[0].is_direction_known && kept[1].is_direction_known))
 {
-  suppose();
+  enqueue();
 }
 
 SurfaceRegistration CandidateMotions::followFirst(const std::vector<Sweep>& kept, Hypotheses& hypotheses)
@@ -30,7 +30,7 @@ SurfaceRegistration CandidateMotions::followFirst(const std::vector<Sweep>& kept
   while (!areTried()) {
     if (waiting_.empty()) {
       search_.goOn(1);
-      suppose();
+      enqueue();
       continue;
     }
     SurfaceRegistration found = begin(kept);
@@ -59,7 +59,7 @@ void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, H
     } else {
       registrations -= static_cast<int>(search_.goOn(static_cast<std::size_t>(registrations)));
       if (search_.isDone()) {
-        suppose();
+        enqueue();
       }
     }
     compare(kept, hypotheses);
@@ -67,16 +67,16 @@ void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, H
 }
 
 /// Those that have turned out to be likely wait to be tried.
-void CandidateMotions::suppose()
+void CandidateMotions::enqueue()
 {
   const std::vector<Vector6> likely = search_.likelyMotions();
   const auto isUnlikely = [&](const Candidate& c) { return !isAmong(likely, c.motion, search_.same()); };
   waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isUnlikely), waiting_.end());
   for (const Vector6& motion : likely) {
-    if (isAmong(supposed_, motion, search_.same())) {
+    if (isAmong(enqueued_, motion, search_.same())) {
       continue;
     }
-    supposed_.push_back(motion);
+    enqueued_.push_back(motion);
     for (std::size_t direction = 0; direction < directions_.size(); ++direction) {
       waiting_.push_back({motion, direction});
     }

@@ -41,13 +41,13 @@ private:
     std::size_t direction = 0;  // of time
   };
 
-  void suppose();
+  void enqueue();
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
   FirstMotionSearch search_;
   std::vector<TrackSettings> directions_;
-  std::vector<Vector6> supposed_;
+  std::vector<Vector6> enqueued_;
   std::deque<Candidate> waiting_;
   std::optional<Hypothesis> late_;
 };

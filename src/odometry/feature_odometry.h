@@ -248,7 +248,7 @@ struct FeatureOdometry : OdometryRun {
   void predictOnly(const char* reason)
   {
     report.reason = reason;
-    report.told_deviation = ToldMotion::kNothing;
+    report.scan_only_deviation = ToldMotion::kNothing;
     finish(started ? TrackingState::predicted : TrackingState::not_started);
   }
 

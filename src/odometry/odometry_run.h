@@ -78,7 +78,7 @@ struct OdometryRun {
   void noteTold(const Matrix6& told, const std::optional<MotionHint>& pose_takes)
   {
     told_motion.take(toldPosition(told, report.registration.target_T_source.rotation, pose_takes), periods);
-    report.told_deviation = told_motion.deviation();
+    report.scan_only_deviation = told_motion.deviation();
   }
 
   /// A pose that only the expectation holds is not called tracked.

@@ -20,7 +20,7 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   problem.prior.covariance = MotionEstimate(guess).covariance();
   problem.prior.periods_between = 0.0;
   problem.prior.pose_counts = false;
-  problem.reach = reachOf(doubt);
+  problem.guess_covariance = guessCovarianceOf(doubt);
   problem.evidence = evidence;
   problem.is_rival = true;
   return registerSurfaces(problem);
@@ -40,7 +40,7 @@ Matrix6 covarianceOf(const Doubt& doubt)
   return variance.asDiagonal();
 }
 
-Matrix6 reachOf(const Doubt& doubt)
+Matrix6 guessCovarianceOf(const Doubt& doubt)
 {
   return covarianceOf({doubt.far / std::sqrt(3.0), doubt.turned / std::sqrt(3.0)});
 }

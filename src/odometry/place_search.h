@@ -21,7 +21,7 @@ struct Doubt {
 [[nodiscard]] Matrix6 covarianceOf(const Doubt& doubt);
 
 /// Of a guess that may be so far off in all directions.
-[[nodiscard]] Matrix6 reachOf(const Doubt& doubt);
+[[nodiscard]] Matrix6 guessCovarianceOf(const Doubt& doubt);
 
 /// A place, and how far off it may still be.
 struct Place {

@@ -57,7 +57,7 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   }
 }
 
-bool PreparedScan::supposeTimes(const CloudView& scan, const OdometryParameters& parameters)
+bool PreparedScan::assumeTimes(const CloudView& scan, const OdometryParameters& parameters)
 {
   const bool is_asked = parameters.timing_source == ScanTimingSource::azimuth;
   if ((!is_asked && parameters.timing_source != ScanTimingSource::automatic) ||

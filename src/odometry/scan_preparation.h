@@ -27,7 +27,7 @@ struct PreparedScan {
   /// Takes times from the azimuth where nothing else tells them: where the points' order does not either, as of a head
   /// that turns clockwise from the rear. \return whether it had to: it may turn the other way, or the scan was
   /// compensated
-  bool supposeTimes(const CloudView& scan, const OdometryParameters& parameters);
+  bool assumeTimes(const CloudView& scan, const OdometryParameters& parameters);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
   /// Apart from the features, so that both can be taken at a time.
   [[nodiscard]] ScanReturns returnsOf(const CloudView& scan, const OdometryParameters& parameters) const;

@@ -61,7 +61,7 @@ struct SurfaceOdometry : OdometryRun {
   void extractFeatures(const CloudView& cloud)
   {
     scan.findStructure(cloud, parameters, clock.period());
-    sweep.is_direction_known = !scan.supposeTimes(cloud, parameters);
+    sweep.is_direction_known = !scan.assumeTimes(cloud, parameters);
     report.milliseconds.scan_lines = watch.lap();
     sideBySide(
         parameters.threads, [&] { scan.takeFeatures(cloud, parameters); }, [&] { samplePoints(cloud); });
@@ -214,7 +214,7 @@ struct SurfaceOdometry : OdometryRun {
   void predictOnly(const char* reason)
   {
     report.reason = reason;
-    report.told_deviation = ToldMotion::kNothing;
+    report.scan_only_deviation = ToldMotion::kNothing;
     first_scans.miss();
     finish(tracker.hasBegun() || map_building.hasPrior() ? TrackingState::predicted : TrackingState::not_started);
   }

@@ -82,7 +82,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   if (rivals == Rivals::motions) {
     problem.is_rival = true;
     problem.evidence = Evidence::of_points;
-    problem.reach *= kLook * kLook;
+    problem.guess_covariance *= kLook * kLook;
   }
   SurfaceRegistration found = registerSurfaces(problem);
   if ((rivals != Rivals::motions || isLong(sweep)) && found.explained() < kBorneOut && seek(sweep, found)) {
@@ -160,7 +160,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.prior.periods_between = periods_between_;
   problem.prior.covariance = motion_.covariance();
   problem.prior.fraction = fractionOf(sweep);
-  problem.reach = motion_.poseCovariance();
+  problem.guess_covariance = motion_.poseCovariance();
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
   problem.threads = settings_.threads;

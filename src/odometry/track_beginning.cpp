@@ -49,7 +49,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     motion_ = MotionEstimate(SE3(), motion);
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
-    problem.reach = reachOf({far, kTurnPerMetre * far});
+    problem.guess_covariance = guessCovarianceOf({far, kTurnPerMetre * far});
     problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     const bool is_last = round + 1 == look.rounds;

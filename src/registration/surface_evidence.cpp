@@ -32,7 +32,7 @@ double evidenceOf(const PlacedPoint& point, const Surface& surface)
     }
     case SurfaceKind::line: return evidenceOf(off.squaredNorm() - along * along, varianceFrom(surface), 2.0);
     case SurfaceKind::point:
-      return evidenceOf(off.dot(surface.felt * off), varianceFrom(surface), surface.felt.trace());
+      return evidenceOf(off.dot(surface.observability * off), varianceFrom(surface), surface.observability.trace());
     case SurfaceKind::unknown: break;
   }
   return 0.0;

@@ -37,7 +37,7 @@ public:
         velocity_(problem.prior.velocity),
         of_prior_(problem.prior.information()),
         prior_(of_prior_),
-        doubt_(problem.reach.topLeftCorner<3, 3>().trace()),
+        doubt_(problem.guess_covariance.topLeftCorner<3, 3>().trace()),
         room_(problem.room != nullptr ? *problem.room : own_room_)
   {
     room_.edges.assign(problem.edges.points != nullptr ? problem.edges.points->size() : 0, FoundSurface());
@@ -211,11 +211,12 @@ private:
   [[nodiscard]] SweepSums accumulate(double look, std::size_t stride)
   {
     SurfaceResiduals residuals{trajectory()};
-    residuals.reach = look * look * problem_.reach;
-    residuals.reach.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
+    residuals.pose_uncertainty = look * look * problem_.guess_covariance;
+    residuals.pose_uncertainty.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.threads = problem_.threads;
-    return residuals.sumsOf(problem_.scan, problem_.edges, stride, room_);
+    const std::size_t edge_stride = problem_.is_rival ? 1 : stride;  // between motions, few edges tell
+    return residuals.sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
   }
 
   struct Equations {

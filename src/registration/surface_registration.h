@@ -42,7 +42,7 @@ struct SurfaceProblem {
   SurfaceTerm edges;  ///< the paper's edge features
   const PoseFactors* factors = nullptr;
   SweepPrior prior;
-  Matrix6 reach = Matrix6::Identity();  ///< covariance of the guess: the first iteration looks so far
+  Matrix6 guess_covariance = Matrix6::Identity();  ///< the first iteration looks so far
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
   Evidence evidence = Evidence::none;

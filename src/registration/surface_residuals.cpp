@@ -23,7 +23,7 @@ static_assert(3 * PlacedPoints::kMost <= ResidualRows::kRoom, "a point has up to
 /// How much of a residual counts along a run. The return may be any place of it, so that its variance there is that of
 /// an even distribution, L^2 / 12, beside what it is elsewhere (no equation of the paper: it registers smooth points
 /// with planes alone).
-double feltAlongRun(double squared_run, double variance)
+double observedAlongRun(double squared_run, double variance)
 {
   constexpr double kEven = 12.0;
   return std::sqrt(variance / (variance + squared_run / kEven));
@@ -53,17 +53,17 @@ void SurfaceSums::add(const SurfaceSums& other)
   robust_weight += other.robust_weight;
 }
 
-SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                   SurfaceRoom& room) const
+SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
+                                   std::size_t edge_stride, SurfaceRoom& room) const
 {
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
-  parts.resize(of_scan + PlacedPoints::chunksOf(edges, stride));
+  parts.resize(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
     const auto c = static_cast<std::size_t>(part);
     parts[c] = chunkOf(c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
-                                   : PlacedPoints(sensor, edges, c - of_scan, stride, room.edges.data()));
+                                   : PlacedPoints(sensor, edges, c - of_scan, edge_stride, room.edges.data()));
   }
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
@@ -128,7 +128,7 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double squared_run = run.squaredNorm();
   const bool has_run = squared_run > kNoExtent;
   const Eigen::Vector3d other = has_run ? line.direction.cross(run).normalized() : line.direction.unitOrthogonal();
-  const Eigen::Vector3d along = feltAlongRun(squared_run, variance) * other.cross(line.direction);
+  const Eigen::Vector3d along = observedAlongRun(squared_run, variance) * other.cross(line.direction);
   const double first = other.dot(from_center);
   const double second = along.dot(from_center);
   const double squared = first * first + second * second;
@@ -148,7 +148,7 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   ++sums.equations.edges;
 }
 
-/// The distance to the nearest point, as far as it is felt.
+/// The distance to the nearest point, as far as it can be observed.
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
   const double variance = varianceFrom(near);
@@ -156,19 +156,19 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const double squared_run = run.squaredNorm();
   const Eigen::Vector3d off = p.place - near.center;
   Eigen::Vector3d seen = off;
-  Eigen::Matrix3d felt = near.felt;
-  if (squared_run > kNoExtent) {  // S off and S felt S with S = 1 - (1 - k) run run^T / |run|^2
-    const double k = feltAlongRun(squared_run, variance);
-    const double unfelt = (1.0 - k) / squared_run;
-    const Eigen::Vector3d along = unfelt * (felt * run);
-    felt -= along * run.transpose() + run * along.transpose() - unfelt * along.dot(run) * run * run.transpose();
-    seen -= unfelt * run.dot(off) * run;
+  Eigen::Matrix3d observed = near.observability;
+  if (squared_run > kNoExtent) {  // S off and S observed S with S = 1 - (1 - k) run run^T / |run|^2
+    const double k = observedAlongRun(squared_run, variance);
+    const double unseen = (1.0 - k) / squared_run;
+    const Eigen::Vector3d along = unseen * (observed * run);
+    observed -= along * run.transpose() + run * along.transpose() - unseen * along.dot(run) * run * run.transpose();
+    seen -= unseen * run.dot(off) * run;
   }
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
   const double w = weight(length * length, variance, derivativeAlong(direction, p), p, sums);
   ++sums.equations.points;
-  rows.add(felt, off, p.arm, w, periods * p.since_middle);
+  rows.add(observed, off, p.arm, w, periods * p.since_middle);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.
@@ -176,7 +176,7 @@ double SurfaceResiduals::weight(double squared, double variance, const Vector6& 
                                 SurfaceSums& sums) const
 {
   constexpr double kFits = 3.0;  // standard deviations
-  const double width = kKernelWidth * kKernelWidth * (variance + derivative.dot(reach * derivative));
+  const double width = kKernelWidth * kKernelWidth * (variance + derivative.dot(pose_uncertainty * derivative));
   const double ratio = width / (width + squared);
   const double robust = ratio * ratio;
   sums.equations.cost += 0.5 * robust * squared / variance;

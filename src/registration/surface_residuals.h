@@ -42,15 +42,15 @@ struct SurfaceRoom {
 
 /// The residuals at one estimate of pose and motion.
 struct SurfaceResiduals {
-  SweepTrajectory sensor;           ///< its reference is mid-sweep
-  Matrix6 reach = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
-  double periods = 0.0;             ///< of the sweep, as far as the velocity that is sought places its points
+  SweepTrajectory sensor;                      ///< its reference is mid-sweep
+  Matrix6 pose_uncertainty = Matrix6::Zero();  ///< covariance of what the pose may still be off: it widens the kernel
+  double periods = 0.0;  ///< of the sweep, as far as the velocity that is sought places its points
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
-  /// \param stride one of the points in so many
-  [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, const SurfaceTerm& edges, std::size_t stride,
-                                 SurfaceRoom& room) const;
+  /// \param stride, edge_stride one of the points in so many
+  [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
+                                 std::size_t edge_stride, SurfaceRoom& room) const;
 
 private:
   [[nodiscard]] SurfaceSums chunkOf(const PlacedPoints& placed) const;

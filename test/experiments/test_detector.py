@@ -117,7 +117,7 @@ class Covariance(unittest.TestCase):
 
 
 def verdict(state, provisional="0", explained="0.9", told="0.01", variance="0.01", reason=""):
-    result = {"state": state, "provisional": provisional, "explained": explained, "told_deviation_m": told, "reason": reason}
+    result = {"state": state, "provisional": provisional, "explained": explained, "scan_only_deviation_m": told, "reason": reason}
     result.update({f"covariance_{a}_m2": variance if a[0] == a[1] else "0" for a in
                    ("xx", "xy", "xz", "yy", "yz", "zz")})
     return result

@@ -110,8 +110,8 @@ TEST(VoxelPyramid, WhatFillsItsCellEvenlyTellsNothingOfTheWayAlong)
   }
   const Surface edge = map.surfaceAt({0.25, 0.2, 0.2}, kStranger);
   ASSERT_EQ(edge.kind, SurfaceKind::point);
-  EXPECT_LT(edge.felt(0, 0), 0.3);
-  EXPECT_GT(edge.felt(1, 1) + edge.felt(2, 2), 3.0 * edge.felt(0, 0));
+  EXPECT_LT(edge.observability(0, 0), 0.3);
+  EXPECT_GT(edge.observability(1, 1) + edge.observability(2, 2), 3.0 * edge.observability(0, 0));
 }
 
 TEST(VoxelPyramid, LooksAtAWiderScaleWhereTheFinestShowsOneLaser)

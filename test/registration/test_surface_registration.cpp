@@ -230,7 +230,7 @@ TEST(SurfaceRegistration, WhatFillsItsCellIsNoEvidence)
 {
   Everywhere map;
   map.surface.kind = SurfaceKind::point;
-  map.surface.felt.setZero();
+  map.surface.observability.setZero();
   EXPECT_NEAR(evidenceIn(map, 0.0), 0.0, 1e-9);
   EXPECT_NEAR(evidenceIn(map, 0.1), 0.0, 1e-9);
 }

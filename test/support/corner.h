@@ -71,7 +71,7 @@ inline SurfaceProblem problemOf(const std::vector<ScanPoint>& points, const Surf
 {
   SurfaceProblem problem;
   problem.scan = {&points, &target};
-  problem.reach = 0.1 * Matrix6(Matrix6::Identity());
+  problem.guess_covariance = 0.1 * Matrix6(Matrix6::Identity());
   problem.prior.covariance = 0.1 * Matrix12(Matrix12::Identity());
   problem.prior.pose_counts = false;
   return problem;

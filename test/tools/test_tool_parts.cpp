@@ -135,7 +135,7 @@ TEST(ResultWriter, TellsOfEachScanWhatWasSaidOfItInFullDigits)
   report.state = TrackingState::doubtful;
   report.provisional = true;
   report.explained = 0.123456789;
-  report.told_deviation = 0.00123456789;
+  report.scan_only_deviation = 0.00123456789;
   report.registration.weak_directions.resize(2);
   report.covariance.topLeftCorner<3, 3>() << 1.0, 2.0, 3.0, 2.0, 4.0, 5.0e-12, 3.0, 5.0e-12, 1234567.89;
   report.reason = "a \"wall\", or none";

@@ -22,9 +22,9 @@ struct Surface {
   SurfaceKind kind = SurfaceKind::unknown;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();     ///< m, world frame: mean of its points; for `point` the nearest
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit: the plane's normal or the line's direction
-  /// Of a `point`: which displacements are felt there, 0 to 1 by direction; some of that is chance, and counted as
+  /// Of a `point`: which displacements show there, 0 to 1 by direction; some of that is chance, and counted as
   /// such. What fills its cell evenly goes on beyond it, and tells nothing of the way along it.
-  Eigen::Matrix3d felt = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d observability = Eigen::Matrix3d::Identity();
   double thickness = 0.0;   ///< m^2: variance of its points across it; for `point` the squared spacing of the points
   double extent = 0.0;      ///< m^2: variance of its points along it, in the shorter direction of a plane
   std::uint32_t count = 0;  ///< of the points it was found from

@@ -71,7 +71,7 @@ struct OdometryReport {
   /// kilometre where nothing does, as of a pose that is predicted; 0 for the first scan, whose pose is given.
   /// `doubtful` until two scans in a row together tell to 1.2 cm, and again from one on that tells to no more than 5
   /// cm, after a gap of ten periods, and where a pose was set.
-  double told_deviation = 0.0;
+  double scan_only_deviation = 0.0;
   /// Of `world_T_sensor`; order, axes and units are those of the registration's, which is of the middle of the sweep:
   /// towards its ends the velocity counts, too. What the registration may be off against the map; along directions that
   /// the scans said nothing of (weak ones, by surfaces; all of them while poses are predicted) what the velocity may
