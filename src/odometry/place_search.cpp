@@ -3,8 +3,10 @@
 #include "common/pi.h"
 #include "motion/motion_estimate.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,7 +33,42 @@ bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
   return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
 }
 
+/// A perturbation by one standard deviation, that by which a guess may move the points farthest.
+struct WidestDoubt {
+  Vector6 perturbation;
+  double displacement = 0.0;  // m, of the points
+
+  WidestDoubt(const Matrix6& covariance, double range)
+  {
+    Vector6 units;
+    units << 1.0, 1.0, 1.0, range, range, range;
+    const Eigen::Matrix<double, 6, 6> displacements = units.asDiagonal() * covariance * units.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> axes(displacements);
+    displacement = std::sqrt(std::max(0.0, axes.eigenvalues()[5]));
+    perturbation = displacement * axes.eigenvectors().col(5).cwiseQuotient(units);
+  }
+};
+
 }  // namespace
+
+SurfaceRegistration registerAround(SurfaceProblem expected, double side)
+{
+  constexpr double kBasin = 0.5;  // sides, one standard deviation
+  const WidestDoubt doubt(expected.guess_covariance, meanRange(*expected.scan.points));
+  if (!(doubt.displacement > kBasin * side)) {
+    return registerSurfaces(expected);
+  }
+  expected.evidence = Evidence::total;
+  SurfaceRegistration best = registerSurfaces(expected);
+  for (const double sign : {1.0, -1.0}) {
+    expected.begins_off = sign * doubt.perturbation;
+    SurfaceRegistration found = registerSurfaces(expected);
+    if (isBetter(found, best)) {
+      best = std::move(found);
+    }
+  }
+  return best;
+}
 
 Matrix6 covarianceOf(const Doubt& doubt)
 {

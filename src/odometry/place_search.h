@@ -29,6 +29,12 @@ struct Place {
   Doubt doubt;
 };
 
+/// The registration from where a sweep is expected; if that may be off by more than a part of the map's finest cells,
+/// beyond which other surfaces are found, also from either side, along the motion of which least is known: the one that
+/// explains the sweep best.
+/// \param side m, of these cells
+[[nodiscard]] SurfaceRegistration registerAround(SurfaceProblem expected, double side);
+
 /// Where a sweep fits, from a guess, looking less and less far.
 /// \param expected the sweep as a track would register it; where and how fast does not count
 [[nodiscard]] Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt);

@@ -84,7 +84,8 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
     problem.evidence = Evidence::of_points;
     problem.guess_covariance *= kLook * kLook;
   }
-  SurfaceRegistration found = registerSurfaces(problem);
+  SurfaceRegistration found =
+      rivals == Rivals::motions ? registerSurfaces(problem) : registerAround(problem, settings_.side);
   if ((rivals != Rivals::motions || isLong(sweep)) && found.explained() < kBorneOut && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
     again.evidence = problem.evidence;

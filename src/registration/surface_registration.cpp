@@ -20,7 +20,7 @@ constexpr double kLeastDoubt = 0.02;
 constexpr std::size_t kFirstStride = 4;
 constexpr std::size_t kManyPoints = 800;
 constexpr int kLeastFirst = 2;
-constexpr int kMostFirst = 4;
+constexpr int kMostFirst = 8;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose by what counts as independent residuals.
@@ -29,17 +29,26 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
+/// m^2, of where the guess has the points.
+double squaredDoubt(const SurfaceProblem& problem)
+{
+  const double range = meanRange(*problem.scan.points);
+  return problem.guess_covariance.topLeftCorner<3, 3>().trace() +
+         range * range * problem.guess_covariance.bottomRightCorner<3, 3>().trace();
+}
+
 class PoseEstimation {
 public:
   explicit PoseEstimation(const SurfaceProblem& problem)
       : problem_(problem),
-        pose_(problem.prior.pose),
-        velocity_(problem.prior.velocity),
         of_prior_(problem.prior.information()),
         prior_(of_prior_),
-        doubt_(problem.guess_covariance.topLeftCorner<3, 3>().trace()),
+        doubt_(squaredDoubt(problem)),
         room_(problem.room != nullptr ? *problem.room : own_room_)
   {
+    const SweepPrior::State begin = problem.prior.movedBy(problem.begins_off);
+    pose_ = begin.pose;
+    velocity_ = begin.velocity;
     room_.edges.assign(problem.edges.points != nullptr ? problem.edges.points->size() : 0, FoundSurface());
   }
 
@@ -268,6 +277,15 @@ private:
 };
 
 }  // namespace
+
+double meanRange(const std::vector<ScanPoint>& points)
+{
+  double squares = 0.0;
+  for (const ScanPoint& point : points) {
+    squares += static_cast<double>(point.x * point.x + point.y * point.y + point.z * point.z);
+  }
+  return points.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points.size()));
+}
 
 SurfaceRegistration registerSurfaces(const SurfaceProblem& problem)
 {

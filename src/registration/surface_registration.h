@@ -42,6 +42,7 @@ struct SurfaceProblem {
   SurfaceTerm edges;  ///< the paper's edge features
   const PoseFactors* factors = nullptr;
   SweepPrior prior;
+  Vector6 begins_off = Vector6::Zero();            ///< perturbation of the prior's pose from which the search begins
   Matrix6 guess_covariance = Matrix6::Identity();  ///< the first iteration looks so far
   SweepPlacement placement = SweepPlacement::joint;
   DegreesOfFreedom locked = {};  ///< these keep the guess's value
@@ -75,6 +76,9 @@ struct SurfaceRegistration {
 
 /// What the map explains less of is in doubt.
 inline constexpr double kBorneOut = 0.5;
+
+/// m, root of the mean square: how far a turn moves the points of a scan, per rad.
+[[nodiscard]] double meanRange(const std::vector<ScanPoint>& points);
 
 /// Bit-identical for every number of threads.
 [[nodiscard]] SurfaceRegistration registerSurfaces(const SurfaceProblem& problem);

@@ -26,6 +26,14 @@ struct SweepPrior {
   /// \param onto projects on these motions
   [[nodiscard]] SweepPrior apartFrom(const Matrix6& onto) const;
 
+  /// A pose and the velocity that goes with it.
+  struct State {
+    SE3 pose;
+    Vector6 velocity;
+  };
+  /// What is expected if the pose is off by a perturbation: the velocity follows it.
+  [[nodiscard]] State movedBy(const Vector6& off) const;
+
   /// How far a pose and a velocity are from what was expected.
   [[nodiscard]] Vector12 offset(const SE3& target_T_sensor, const Vector6& at_velocity) const;
 };

@@ -118,16 +118,17 @@ TEST(UndecidedStarts, EndWhereRivalsMoveAlike)
   options.sensor = "vlp16";
   options.seed = 5;
   options.family = Family::test;
+  constexpr int kEnd = 60;  // scans
   FirstScans scans(options);
   int undecided = 0;
   OdometryReport report;
-  for (int number = 0; number < 50; ++number) {
+  for (int number = 0; number < kEnd; ++number) {
     report = scans.next();
     undecided += saysSeveralExplain(report) ? 1 : 0;
   }
   EXPECT_GT(undecided, 0) << "no rivals here";
   EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
-  EXPECT_LT(scans.greatestWayError(50), 0.3);
+  EXPECT_LT(scans.greatestWayError(kEnd), 0.3);
 }
 
 /// Scans in which nothing is where it was fit none of the rivals; these are followed where it goes on.
