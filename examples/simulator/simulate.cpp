@@ -28,6 +28,7 @@ struct Arguments {
   sim::SimulationOptions options;
   std::string output;
   std::vector<double> gap, mount, turned_frame;
+  double nod = 0.0;
   std::size_t scans = 0;  // 0: the whole path
   Format format = Format::pcd;
   std::string sequence = "00";  // kitti-odometry
@@ -99,6 +100,9 @@ void describeSensor(CLI::App& app, Arguments& arguments)
                  "Degrees ROLL,PITCH,YAW of the sensor on what carries it; 180,0,0: upside down")
       ->delimiter(',')
       ->expected(3);
+  app.add_option("--nod", arguments.nod, "Degrees that what carries the sensor nods up and down, as what walks does")
+      ->capture_default_str();
+  app.add_option("--nod-rate", options.nod_rate, "How often a second")->capture_default_str();
   app.add_option("--turned-frame", arguments.turned_frame,
                  "Degrees ROLL,PITCH,YAW of the frame that points and poses are given in, against the sensor's own")
       ->delimiter(',')
@@ -153,6 +157,7 @@ void convert(Arguments& arguments)
 {
   sim::SimulationOptions& options = arguments.options;
   options.mount = inRadians(arguments.mount);
+  options.nod = inRadians({0.0, arguments.nod, 0.0}).pitch;
   options.turned_frame = inRadians(arguments.turned_frame);
   if (arguments.gap.size() == 2) {
     options.gap_from = arguments.gap[0];

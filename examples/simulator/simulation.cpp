@@ -38,6 +38,8 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.reach >= 0.0, "the reach must not be negative");
   check(options.carrier >= 0.0 && options.carrier <= 10.0, "the carrier must be from 0 to 10 m behind the sensor");
   check(options.start >= 0.0, "the start must not be negative");
+  check(std::abs(options.nod) <= 1.0 && options.nod_rate >= 0.0 && options.nod_rate <= 10.0,
+        "the sensor must nod by at most 1 rad and 10 times a second");
   const Weather& weather = options.weather;
   check(weather.rain >= 0.0 && weather.rain <= 200.0, "the rain must be from 0 to 200 mm/h");
   check(weather.snow >= 0.0 && weather.snow <= 20.0, "the snow must be from 0 to 20 mm/h of water");
@@ -166,7 +168,12 @@ double Simulation::accelerationBound() const
 
 SE3 Simulation::sensorPose(double t) const
 {
-  const SE3 body_T_sensor{unit_.tilt(options_.start + t) * options_.mount.rotation(), Eigen::Vector3d::Zero()};
+  const double started = std::clamp(options_.start + t, 0.0, 1.0);  // s
+  const double risen = started * started * (3.0 - 2.0 * started);
+  const RollPitchYaw nodding{
+      0.0, risen * options_.nod * std::sin(2.0 * M_PI * options_.nod_rate * (options_.start + t)), 0.0};
+  const SE3 body_T_sensor{nodding.rotation() * unit_.tilt(options_.start + t) * options_.mount.rotation(),
+                          Eigen::Vector3d::Zero()};
   if (options_.standing) {
     const SE3 world_T_path = motion().pose(options_.start);
     return world_T_path * SE3{Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, *options_.standing, 0.0)} *

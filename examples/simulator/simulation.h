@@ -52,6 +52,8 @@ struct SimulationOptions {
   GivenErrors errors;  ///< in place of what \ref realism says of them
   Weather weather;
   RollPitchYaw mount;         ///< how the sensor is mounted on what carries it: tilted, upside down
+  double nod = 0.0;           ///< rad: what carries it nods so far up and down, from the first second on ...
+  double nod_rate = 1.0;      ///< ... so often a second
   RollPitchYaw turned_frame;  ///< of the frame that points and poses are given in, against the sensor's own
   bool smooth = false;        ///< see WorldOptions::smooth
   int path = 1;               ///< see WorldOptions::path

@@ -83,4 +83,35 @@ TEST_P(FastMotion, IsFollowedFromTheFirstScanOn)
 INSTANTIATE_TEST_SUITE_P(Starts, FastMotion, testing::Values(Swing{0}, Swing{10}, Swing{25}),
                          [](const auto& swing) { return std::to_string(swing.param.start); });
 
+/// A constant velocity is off by several degrees from sweep to sweep, by which one shelf lies where the next one was.
+class Nodding : public testing::TestWithParam<unsigned> {};
+
+TEST_P(Nodding, IsFollowedAmongShelves)
+{
+  constexpr std::size_t kScans = 70;
+  SimulationOptions options;
+  options.sensor = "vlp16";
+  options.seed = GetParam();
+  options.family = Family::test;
+  options.realism = Realism::real;
+  options.nod = 10.0 * kPi / 180.0;
+  options.nod_rate = 2.0;
+  Simulation simulation(options);
+  OdometryParameters parameters;
+  parameters.pose_instant = PoseInstant::middle;
+  Odometry<PointXYZIRT> odometry(parameters);
+  SE3 first;
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    const Sweep sweep = simulation.sweep(i);
+    first = i == 0 ? sweep.world_T_middle : first;
+    const OdometryReport& report = odometry.track(sweep.cloud, kPeriod * static_cast<double>(i));
+    const SE3 error = (first.inverse() * sweep.world_T_middle).inverse() * report.world_T_sensor;
+    farthest = std::max(farthest, error.translation.norm());
+  }
+  EXPECT_LT(farthest, 0.15);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, Nodding, testing::Values(1U, 2U, 3U));
+
 }  // namespace pcl_floam::simulator
