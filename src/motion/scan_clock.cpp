@@ -24,9 +24,19 @@ double ScanClock::period() const
   return medianOf(recent.begin(), recent.begin() + std::min(remembered_, kRemembered));
 }
 
+double ScanClock::jitter() const
+{
+  constexpr double kPerDeviation = 1.4826;  // standard deviations per median of absolute deviations
+  const double usual = period();
+  std::array<double, kRemembered> off = recent_;
+  const auto end = off.begin() + std::min(remembered_, kRemembered);
+  std::for_each(off.begin(), end, [usual](double& elapsed) { elapsed = std::abs(elapsed - usual); });
+  return usual > 0.0 ? kPerDeviation * medianOf(off.begin(), end) / usual : 0.0;
+}
+
 double ScanClock::error() const
 {
-  return std::sqrt(static_cast<double>(standing_ == 1) + static_cast<double>(stood_));
+  return std::hypot(std::sqrt(static_cast<double>(standing_ == 1) + static_cast<double>(stood_)), jitter());
 }
 
 double ScanClock::tick(std::optional<double> stamp)

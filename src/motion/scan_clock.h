@@ -19,8 +19,8 @@ public:
   /// forwards or back, mean that the clock was set: that is 1, too.
   double tick(std::optional<double> stamp);
 
-  /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at
-  /// all.
+  /// How far off that may be, one standard deviation: stamps jitter that are taken when a scan arrives, and one that
+  /// does not advance may be an old scan's or none at all.
   [[nodiscard]] double error() const;
 
   /// Seconds from sweep to sweep; 0 while unknown.
@@ -28,6 +28,7 @@ public:
 
 private:
   void remember(double elapsed);
+  [[nodiscard]] double jitter() const;
 
   double given_period_;
   std::optional<double> last_stamp_;
