@@ -102,7 +102,7 @@ void describeSensor(CLI::App& app, Arguments& arguments)
       ->expected(3);
   app.add_option("--nod", arguments.nod, "Degrees that what carries the sensor nods up and down, as what walks does")
       ->capture_default_str();
-  app.add_option("--nod-rate", options.nod_rate, "How often a second")->capture_default_str();
+  app.add_option("--nod-rate", options.nod_rate, "Nods a second")->capture_default_str();
   app.add_option("--turned-frame", arguments.turned_frame,
                  "Degrees ROLL,PITCH,YAW of the frame that points and poses are given in, against the sensor's own")
       ->delimiter(',')

@@ -39,7 +39,7 @@ SimulationOptions checked(const SimulationOptions& options)
   check(options.carrier >= 0.0 && options.carrier <= 10.0, "the carrier must be from 0 to 10 m behind the sensor");
   check(options.start >= 0.0, "the start must not be negative");
   check(std::abs(options.nod) <= 1.0 && options.nod_rate >= 0.0 && options.nod_rate <= 10.0,
-        "the sensor must nod by at most 1 rad and 10 times a second");
+        "the sensor must nod by at most 57 degrees and 10 times a second");
   const Weather& weather = options.weather;
   check(weather.rain >= 0.0 && weather.rain <= 200.0, "the rain must be from 0 to 200 mm/h");
   check(weather.snow >= 0.0 && weather.snow <= 20.0, "the snow must be from 0 to 20 mm/h of water");

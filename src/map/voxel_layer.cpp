@@ -227,6 +227,9 @@ std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& wor
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 64) reduction(+ : forgotten)
   for (std::ptrdiff_t b = 0; b < static_cast<std::ptrdiff_t>(blocks_.size()); ++b) {
     VoxelBlock& block = blocks_[static_cast<std::size_t>(b)];
+    if (!block.isUsed()) {
+      continue;
+    }
     const Eigen::Vector3d corner = block_size_ * Eigen::Vector3d(block.key.x, block.key.y, block.key.z);
     const Eigen::Vector3d middle = corner.array() + 0.5 * block_size_;
     if ((middle - world_T_sensor.translation).squaredNorm() > radius * radius) {

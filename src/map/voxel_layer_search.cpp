@@ -93,9 +93,11 @@ void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit
     }
   };
   const double reach = std::ceil(radius / block_size_);
-  if (std::pow(2.0 * reach + 1.0, 3.0) >= static_cast<double>(blocks_.size())) {
+  if (std::pow(2.0 * reach + 1.0, 3.0) >= static_cast<double>(numbers_.size())) {
     for (const VoxelBlock& block : blocks_) {  // fewer blocks than places where one could be
-      visitOne(block.key, &block);
+      if (block.isUsed()) {
+        visitOne(block.key, &block);
+      }
     }
     return;
   }

@@ -24,19 +24,27 @@ double ScanClock::period() const
   return medianOf(recent.begin(), recent.begin() + std::min(remembered_, kRemembered));
 }
 
+/// By the median of what differences are off a whole number of periods.
 double ScanClock::jitter() const
 {
   constexpr double kPerDeviation = 1.4826;  // standard deviations per median of absolute deviations
+  constexpr std::size_t kFew = 5;           // differences, which tell nothing of it
   const double usual = period();
+  if (remembered_ < kFew || !(usual > 0.0)) {
+    return 0.0;
+  }
   std::array<double, kRemembered> off = recent_;
   const auto end = off.begin() + std::min(remembered_, kRemembered);
-  std::for_each(off.begin(), end, [usual](double& elapsed) { elapsed = std::abs(elapsed - usual); });
-  return usual > 0.0 ? kPerDeviation * medianOf(off.begin(), end) / usual : 0.0;
+  std::for_each(off.begin(), end, [usual](double& elapsed) {
+    const double periods = elapsed / usual;
+    elapsed = std::abs(periods - std::max(1.0, std::round(periods)));
+  });
+  return kPerDeviation * medianOf(off.begin(), end);
 }
 
 double ScanClock::error() const
 {
-  return std::hypot(std::sqrt(static_cast<double>(standing_ == 1) + static_cast<double>(stood_)), jitter());
+  return std::sqrt(static_cast<double>(standing_ == 1) + static_cast<double>(stood_));
 }
 
 double ScanClock::tick(std::optional<double> stamp)

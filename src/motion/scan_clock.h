@@ -19,16 +19,17 @@ public:
   /// forwards or back, mean that the clock was set: that is 1, too.
   double tick(std::optional<double> stamp);
 
-  /// How far off that may be, one standard deviation: stamps jitter that are taken when a scan arrives, and one that
-  /// does not advance may be an old scan's or none at all.
+  /// How far off that may be, one standard deviation: a stamp that does not advance may be an old scan's or none at
+  /// all.
   [[nodiscard]] double error() const;
+  /// How far off the periods between any two scans may be, since stamps that are taken when a scan arrives jitter.
+  [[nodiscard]] double jitter() const;
 
   /// Seconds from sweep to sweep; 0 while unknown.
   [[nodiscard]] double period() const;
 
 private:
   void remember(double elapsed);
-  [[nodiscard]] double jitter() const;
 
   double given_period_;
   std::optional<double> last_stamp_;

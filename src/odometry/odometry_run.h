@@ -40,7 +40,7 @@ struct OdometryRun {
   bool rests_since_first = false;    ///< among its poses is the first scan's
   double sweep_fraction = 0.0;       ///< of the last scan that told of it
   double periods = 0.0;              ///< since the last scan that was registered ...
-  double periods_error = 0.0;        ///< ... and how far off that may be
+  double periods_error = 0.0;        ///< ... and how far off that may be, besides what stamps jitter
   std::optional<double> scan_stamp;  ///< s
   double since_stamp = 0.0;          ///< of the poses, s; of the last scan that told of it
   OdometryReport report;
@@ -129,10 +129,13 @@ struct OdometryRun {
     }
   }
 
+  /// Of the periods since the last scan that was registered.
+  [[nodiscard]] double errorOfPeriods() const { return std::hypot(periods_error, clock.jitter()); }
+
   /// Motion Estimation (Eq. 2).
   [[nodiscard]] MotionEstimate predictedFrom(MotionEstimate motion, double over) const
   {
-    motion.predict(over, hint.sinceLast(), periods_error);
+    motion.predict(over, hint.sinceLast(), errorOfPeriods());
     return motion;
   }
 

@@ -2,6 +2,8 @@
 
 #include "common/pi.h"
 #include "motion/motion_estimate.h"
+#include "registration/locked_motions.h"
+#include "registration/placed_points.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -51,19 +53,32 @@ struct WidestDoubt {
 
 }  // namespace
 
+double likelihoodOf(const SurfaceRegistration& found, const SE3& expected, const Matrix6& covariance)
+{
+  const SE3& pose = found.report.target_T_source;
+  Vector6 off;
+  off << pose.translation - expected.translation, logSO3(pose.rotation * expected.rotation.transpose());
+  return found.evidence - 0.5 * squaredDeviations(off, covariance + found.report.covariance);
+}
+
 SurfaceRegistration registerAround(SurfaceProblem expected, double side)
 {
-  constexpr double kBasin = 0.5;  // sides, one standard deviation
-  const WidestDoubt doubt(expected.guess_covariance, meanRange(*expected.scan.points));
+  constexpr double kBasin = 0.5;  // sides
+  const Matrix6 free = covarianceWithLocked(expected.guess_covariance, expected.locked);
+  const WidestDoubt doubt(free, rmsRange(*expected.scan.points));
   if (!(doubt.displacement > kBasin * side)) {
     return registerSurfaces(expected);
   }
+  const auto likelihood = [&expected](const SurfaceRegistration& found) {
+    return found.report.hasConverged() ? likelihoodOf(found, expected.prior.pose, expected.guess_covariance)
+                                       : -HUGE_VAL;
+  };
   expected.evidence = Evidence::total;
   SurfaceRegistration best = registerSurfaces(expected);
   for (const double sign : {1.0, -1.0}) {
     expected.begins_off = sign * doubt.perturbation;
     SurfaceRegistration found = registerSurfaces(expected);
-    if (isBetter(found, best)) {
+    if (likelihood(found) > likelihood(best)) {
       best = std::move(found);
     }
   }
@@ -92,11 +107,12 @@ Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt
   return {pose, doubt};
 }
 
-std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector<SE3>& guesses, const Doubt& doubt)
+std::optional<SE3> betterPlace(const SurfaceProblem& expected, double side, const std::vector<SE3>& guesses,
+                               const Doubt& doubt)
 {
   SurfaceProblem weighed = expected;
   weighed.evidence = Evidence::total;
-  SurfaceRegistration best = registerSurfaces(weighed);
+  SurfaceRegistration best = registerAround(weighed, side);
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {
     SurfaceRegistration found = registerFrom(expected, guess, doubt, Evidence::total);

@@ -29,9 +29,14 @@ struct Place {
   Doubt doubt;
 };
 
-/// The registration from where a sweep is expected; if that may be off by more than a part of the map's finest cells,
-/// beyond which other surfaces are found, also from either side, along the motion of which least is known: the one that
-/// explains the sweep best.
+/// What a registration is worth: how it explains a sweep, and how little the sensor must have been pushed about.
+/// \param found      its evidence is weighed
+/// \param covariance of the pose that was expected
+[[nodiscard]] double likelihoodOf(const SurfaceRegistration& found, const SE3& expected, const Matrix6& covariance);
+
+/// The registration from where a sweep is expected. If its points may be off by more than half of the map's finest
+/// cells, one standard deviation, where they find other surfaces, also from so far on either side, along the motion by
+/// which they may be farthest off: the likeliest of the three, whose evidence is weighed then.
 /// \param side m, of these cells
 [[nodiscard]] SurfaceRegistration registerAround(SurfaceProblem expected, double side);
 
@@ -40,8 +45,9 @@ struct Place {
 [[nodiscard]] Place settledPlace(const SurfaceProblem& expected, const SE3& guess, Doubt doubt);
 
 /// Where a sweep is explained best from some guesses; nothing if it is not better than from where it is expected.
-[[nodiscard]] std::optional<SE3> betterPlace(const SurfaceProblem& expected, const std::vector<SE3>& guesses,
-                                             const Doubt& doubt);
+/// \param side m, as \ref registerAround has it
+[[nodiscard]] std::optional<SE3> betterPlace(const SurfaceProblem& expected, double side,
+                                             const std::vector<SE3>& guesses, const Doubt& doubt);
 
 /// Turned by any angle about its axis.
 [[nodiscard]] std::vector<SE3> anyTurnOf(const std::vector<SE3>& poses);

@@ -146,7 +146,7 @@ struct SurfaceOdometry : OdometryRun {
   Tracker::Outcome registerSweep()
   {
     sweep.fraction = scan.sweep_fraction;
-    sweep.periods_error = periods_error;
+    sweep.periods_error = errorOfPeriods();
     sweep.hint = hint.sinceLast();
     const bool is_placed = tracker.isTracking() || map_building.hasPrior();
     sweep.factors = {components.factors, is_placed ? world_T_track : initial_pose};

@@ -118,7 +118,7 @@ bool Track::seek(const Sweep& sweep, const SurfaceRegistration& found)
   }
   const Doubt doubt = is_anywhere ? kAround : kGiven;
   const auto guesses = is_anywhere ? anyTurnOf({pose_.middle, motion_.pose()}) : std::vector<SE3>{motion_.pose()};
-  const std::optional<SE3> place = betterPlace(problemFor(sweep), guesses, doubt);
+  const std::optional<SE3> place = betterPlace(problemFor(sweep), settings_.side, guesses, doubt);
   if (place) {
     sweeps_to_wait_ = kSweepsUntilKnown;
     settle(sweep, *place, doubt);
@@ -169,17 +169,12 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   return problem;
 }
 
-/// What a hypothesis is worth: how it explains the last sweeps, and how little the sensor must have been pushed about.
-/// What was long ago counts less, since a moving sensor's map says little at first, and a resting one's all it ever
-/// will.
+/// What a hypothesis is worth, by the last sweeps. What was long ago counts less, since a moving sensor's map says
+/// little at first, and a resting one's all it ever will.
 void Track::judge(const SurfaceRegistration& registration)
 {
   constexpr double kKept = 1.0 - 1.0 / kRememberedSweeps;  // of the evidence, from sweep to sweep
-  const SE3& found = registration.report.target_T_source;
-  Vector6 off;
-  off << found.translation - motion_.pose().translation, logSO3(found.rotation * motion_.pose().rotation.transpose());
-  const Matrix6 expected = motion_.poseCovariance() + registration.report.covariance;
-  evidence_ = kKept * evidence_ + registration.evidence - 0.5 * squaredDeviations(off, expected);
+  evidence_ = kKept * evidence_ + likelihoodOf(registration, motion_.pose(), motion_.poseCovariance());
 }
 
 /// Distortion Compensation Update (Eq. 12).

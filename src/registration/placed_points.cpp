@@ -3,6 +3,8 @@
 #include "map/surface_fit.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 namespace pcl_floam {
 
@@ -78,6 +80,16 @@ PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& ter
   } else {
     findAgain(*term.target, *this, lasers, stride, found + begin * stride);
   }
+}
+
+double rmsRange(const std::vector<ScanPoint>& points)
+{
+  constexpr double kLeast = 1e-3;  // m: what is no range is divided by
+  double squares = 0.0;
+  for (const ScanPoint& point : points) {
+    squares += static_cast<double>(point.x * point.x + point.y * point.y + point.z * point.z);
+  }
+  return points.empty() ? 1.0 : std::max(kLeast, std::sqrt(squares / static_cast<double>(points.size())));
 }
 
 double varianceFrom(const Surface& plane, const PlacedPoint& point, const Eigen::Vector3d& turn,

@@ -45,6 +45,9 @@ struct PlacedPoints {
   std::array<Surface, kMost> surfaces;
 };
 
+/// m, root of the mean square, and one without points: so far a turn moves the points of a scan, per rad.
+[[nodiscard]] double rmsRange(const std::vector<ScanPoint>& points);
+
 /// m^2: how far a point may be from a plane that it is on: range noise, the plane's thickness, and what points that
 /// are far from its middle make of its tilt.
 /// \param turn arm x direction

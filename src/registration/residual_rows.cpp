@@ -104,11 +104,11 @@ void ResidualRows::add(const Eigen::Vector3d& normal, const Eigen::Vector3d& arm
 void ResidualRows::add(const Eigen::Matrix3d& m, const Eigen::Vector3d& difference, const Eigen::Vector3d& arm,
                        double weight, double since_middle)
 {
-  constexpr double kNotFelt = 1e-6;  // of a residual
+  constexpr double kUnseen = 1e-6;  // of a residual
   Eigen::Matrix3d rest = m;
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double d = rest(i, i);
-    if (d > kNotFelt) {
+    if (d > kUnseen) {
       const Eigen::Vector3d u = rest.col(i) / d;
       rest -= d * u * u.transpose();
       add(u, arm, u.dot(difference), d * weight, since_middle);

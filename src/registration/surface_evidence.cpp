@@ -1,7 +1,6 @@
 #include "registration/surface_evidence.h"
 
 #include "common/pi.h"
-#include "registration/information_analysis.h"
 
 #include <cmath>
 #include <cstddef>

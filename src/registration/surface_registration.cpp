@@ -32,7 +32,7 @@ constexpr double kResidualsBesideMotion = 3.0;
 /// m^2, of where the guess has the points.
 double squaredDoubt(const SurfaceProblem& problem)
 {
-  const double range = meanRange(*problem.scan.points);
+  const double range = rmsRange(*problem.scan.points);
   return problem.guess_covariance.topLeftCorner<3, 3>().trace() +
          range * range * problem.guess_covariance.bottomRightCorner<3, 3>().trace();
 }
@@ -277,15 +277,6 @@ private:
 };
 
 }  // namespace
-
-double meanRange(const std::vector<ScanPoint>& points)
-{
-  double squares = 0.0;
-  for (const ScanPoint& point : points) {
-    squares += static_cast<double>(point.x * point.x + point.y * point.y + point.z * point.z);
-  }
-  return points.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(points.size()));
-}
 
 SurfaceRegistration registerSurfaces(const SurfaceProblem& problem)
 {

@@ -77,9 +77,6 @@ struct SurfaceRegistration {
 /// What the map explains less of is in doubt.
 inline constexpr double kBorneOut = 0.5;
 
-/// m, root of the mean square: how far a turn moves the points of a scan, per rad.
-[[nodiscard]] double meanRange(const std::vector<ScanPoint>& points);
-
 /// Bit-identical for every number of threads.
 [[nodiscard]] SurfaceRegistration registerSurfaces(const SurfaceProblem& problem);
 

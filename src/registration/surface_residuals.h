@@ -48,7 +48,8 @@ struct SurfaceResiduals {
   int threads = 1;
 
   /// In fixed chunks, added in order: the same bits for every number of threads.
-  /// \param stride, edge_stride one of the points in so many
+  /// \param stride      one of the scan's points in so many
+  /// \param edge_stride of the edges
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                  std::size_t edge_stride, SurfaceRoom& room) const;
 

@@ -39,6 +39,9 @@ SweepPrior SweepPrior::apartFrom(const Matrix6& onto) const
 
 SweepPrior::State SweepPrior::movedBy(const Vector6& off) const
 {
+  if (off.isZero(0.0)) {
+    return {pose, velocity};
+  }
   const Vector6 faster = covariance.bottomLeftCorner<6, 6>() * (ofPose(covariance) * off);
   const Eigen::Matrix3d back = pose.rotation.transpose();
   State moved = {SE3(nearestRotation(expSO3(off.tail<3>()) * pose.rotation), pose.translation + off.head<3>()),
