@@ -205,8 +205,25 @@ TEST(VoxelLayer, CropForgetsWhatIsFar)
     EXPECT_EQ(std::count_if(before.begin(), before.end(), inside), std::count_if(after.begin(), after.end(), inside));
     EXPECT_LT(after.size(), before.size());
     expectBruteForce(layer, after, center, 6.0);
-    layer.insert(center + Eigen::Vector3d(9.0, 9.0, 9.0));
-    EXPECT_EQ(layer.size(), after.size() + 1);
+  }
+}
+
+/// Places of blocks that were forgotten serve others: nobody finds these where the old ones were.
+TEST(VoxelLayer, WhatIsForgottenMakesRoomForOthers)
+{
+  const Eigen::Vector3d elsewhere(60.0, 0.0, 0.0);
+  VoxelLayer layer = filledLayer(kNear, 4000, 10.0);
+  layer.crop(kNear, 6.0);
+  for (const int threads : {1, 4}) {
+    VoxelLayer filled(layer);
+    const std::vector<Eigen::Vector3d> others = filledLayer(kNear + elsewhere, 4000, 10.0).points();
+    filled.insertEach(others.data(), others.size(), threads);
+    EXPECT_EQ(filled.size(), layer.size() + others.size());
+    expectBruteForce(filled, filled.points(), kNear, 8.0);
+    expectBruteForce(filled, filled.points(), kNear + elsewhere, 8.0);
+    filled.clear();
+    filled.insertEach(others.data(), others.size(), threads);
+    expectBruteForce(filled, filled.points(), kNear + elsewhere, 8.0);
   }
 }
 
