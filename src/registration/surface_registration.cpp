@@ -20,7 +20,7 @@ constexpr double kLeastDoubt = 0.02;
 constexpr std::size_t kFirstStride = 4;
 constexpr std::size_t kManyPoints = 800;
 constexpr int kLeastFirst = 2;
-constexpr int kMostFirst = 8;
+constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.
 constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose by what counts as independent residuals.
@@ -29,10 +29,10 @@ constexpr double kSmallStep = 0.3;
 /// What many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
-/// m^2, of where the guess has the points.
+/// m^2, of where the guess has the points. Rivals look farther than their guesses may be off as it is.
 double squaredDoubt(const SurfaceProblem& problem)
 {
-  const double range = rmsRange(*problem.scan.points);
+  const double range = problem.is_rival ? 0.0 : rmsRange(*problem.scan.points);
   return problem.guess_covariance.topLeftCorner<3, 3>().trace() +
          range * range * problem.guess_covariance.bottomRightCorner<3, 3>().trace();
 }
