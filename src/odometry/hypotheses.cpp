@@ -179,14 +179,13 @@ void Hypotheses::giveUpMotions()
 
 bool Hypotheses::haveLeftBehind(const Hypothesis& late) const
 {
-  constexpr double kBetter = 1.0;  // evidence: less does not tell two registrations of one motion apart
   const std::size_t now = late.evidences.size() - 1;
   std::ptrdiff_t better = 0;
   for (const Hypothesis& other : all_) {
     if (other.direction() != late.direction()) {
       continue;
     }
-    const bool is_as_good = late.evidences[now] < other.evidences[now] + kBetter;
+    const bool is_as_good = late.evidences[now] < other.evidences[now] + kOfOneMotion;
     if (wasWorse(late, other, now) || (is_as_good && now == 1 && haveBegunAlike(late, other))) {
       return true;
     }

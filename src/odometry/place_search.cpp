@@ -51,6 +51,12 @@ struct WidestDoubt {
   }
 };
 
+/// Of the covariance of a guess, what a scan takes away: along what it does not tell, no place is better than another.
+Matrix6 settledBy(const SurfaceRegistration& found, const Matrix6& covariance)
+{
+  return propagated(covariance, inverseOf(Matrix6(covariance + found.told)));
+}
+
 }  // namespace
 
 double likelihoodOf(const SurfaceRegistration& found, const SE3& expected, const Matrix6& covariance)
@@ -64,9 +70,9 @@ double likelihoodOf(const SurfaceRegistration& found, const SE3& expected, const
 SurfaceRegistration registerAround(SurfaceProblem expected, double side)
 {
   constexpr double kBasin = 0.5;  // sides
+  const double range = rmsRange(*expected.scan.points);
   const Matrix6 free = covarianceWithLocked(expected.guess_covariance, expected.locked);
-  const WidestDoubt doubt(free, rmsRange(*expected.scan.points));
-  if (!(doubt.displacement > kBasin * side)) {
+  if (!(WidestDoubt(free, range).displacement > kBasin * side)) {
     return registerSurfaces(expected);
   }
   const auto likelihood = [&expected](const SurfaceRegistration& found) {
@@ -75,10 +81,14 @@ SurfaceRegistration registerAround(SurfaceProblem expected, double side)
   };
   expected.evidence = Evidence::total;
   SurfaceRegistration best = registerSurfaces(expected);
+  const WidestDoubt doubt(settledBy(best, free), range);
+  if (!(doubt.displacement > kBasin * side)) {
+    return best;
+  }
   for (const double sign : {1.0, -1.0}) {
     expected.begins_off = sign * doubt.perturbation;
     SurfaceRegistration found = registerSurfaces(expected);
-    if (likelihood(found) > likelihood(best)) {
+    if (likelihood(found) > likelihood(best) + kOfOneMotion) {
       best = std::move(found);
     }
   }

@@ -29,6 +29,9 @@ struct Place {
   Doubt doubt;
 };
 
+/// Evidence that does not tell two registrations of one motion apart.
+inline constexpr double kOfOneMotion = 1.0;
+
 /// What a registration is worth: how it explains a sweep, and how little the sensor must have been pushed about.
 /// \param found      its evidence is weighed
 /// \param covariance of the pose that was expected
@@ -36,7 +39,8 @@ struct Place {
 
 /// The registration from where a sweep is expected. If its points may be off by more than half of the map's finest
 /// cells, one standard deviation, where they find other surfaces, also from so far on either side, along the motion by
-/// which they may be farthest off: the likeliest of the three, whose evidence is weighed then.
+/// which they may be farthest off as far as the sweep tells of it: the likeliest of the three, whose evidence is
+/// weighed then.
 /// \param side m, of these cells
 [[nodiscard]] SurfaceRegistration registerAround(SurfaceProblem expected, double side);
 
