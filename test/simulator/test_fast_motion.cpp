@@ -1,4 +1,5 @@
-// A sensor that is swung by hand, half as fast again as it usually is in the simulated office, from the first scan on.
+// A sensor that is swung by hand, half as fast again as it usually is in the simulated office, from the first scan on,
+// and one that nods among shelves.
 
 #include "simulation.h"
 #include "support/constants.h"
@@ -106,6 +107,7 @@ TEST_P(Nodding, IsFollowedAmongShelves)
     const Sweep sweep = simulation.sweep(i);
     first = i == 0 ? sweep.world_T_middle : first;
     const OdometryReport& report = odometry.track(sweep.cloud, kPeriod * static_cast<double>(i));
+    EXPECT_TRUE(i == 0 || report.registration.hasConverged()) << i << ": " << report.reason;
     const SE3 error = (first.inverse() * sweep.world_T_middle).inverse() * report.world_T_sensor;
     farthest = std::max(farthest, error.translation.norm());
   }

@@ -129,6 +129,25 @@ TEST(Mounts, TiltedSensorsSeeTheSameWorld)
   }
 }
 
+TEST(Mounts, NodAsFarAndAsOftenAsAsked)
+{
+  SimulationOptions options = tunnel();
+  const Simulation level(options);
+  options.nod = 0.3;
+  options.nod_rate = 2.0;
+  Simulation nodding(options);
+  const auto nodAt = [&](double t) {
+    const Eigen::Matrix3d turn = level.worldTSensor(t).rotation.transpose() * nodding.worldTSensor(t).rotation;
+    return std::atan2(turn(0, 2), turn(0, 0));
+  };
+  EXPECT_NEAR(nodAt(0.0), 0.0, 1e-12) << "it rests at first";
+  EXPECT_NEAR(nodAt(1.125), 0.3, 1e-9);
+  EXPECT_NEAR(nodAt(1.375), -0.3, 1e-9);
+  EXPECT_LT(farthestFromWalls(nodding, nodding.sweep(12)), 1e-3);
+  options.nod = 2.0;
+  EXPECT_THROW(Simulation{options}, std::invalid_argument);
+}
+
 TEST(TurnedFrames, TurnPointsAndPosesAndLeaveTheWorld)
 {
   SimulationOptions options = tunnel();
