@@ -87,7 +87,7 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
   const Matrix6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
   growth.noise.topLeftCorner<6, 6>() += periods_error * periods_error * squared_motion;
   covariance_ = growth.of(was);
-  constexpr double kUnknown = 1.0;  // period: it may have been one more
+  constexpr double kUnknown = 1.0;  // period: how many went by is not known, so what was off tells nothing
   periods_ = periods_error >= kUnknown || hint ? 0.0 : periods;
   if (hint) {
     take(*hint, before, was, growth);

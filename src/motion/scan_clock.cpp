@@ -28,9 +28,9 @@ double ScanClock::period() const
 double ScanClock::jitter() const
 {
   constexpr double kPerDeviation = 1.4826;  // standard deviations per median of absolute deviations
-  constexpr std::size_t kFew = 5;           // differences, which tell nothing of it
+  constexpr std::size_t kFewest = 5;        // differences: one that is odd must not decide
   const double usual = period();
-  if (remembered_ < kFew || !(usual > 0.0)) {
+  if (remembered_ < kFewest || !(usual > 0.0)) {
     return 0.0;
   }
   std::array<double, kRemembered> off = recent_;

@@ -69,7 +69,7 @@ double likelihoodOf(const SurfaceRegistration& found, const SE3& expected, const
 
 SurfaceRegistration registerAround(SurfaceProblem expected, double side)
 {
-  constexpr double kBasin = 0.5;  // sides
+  constexpr double kBasin = 0.5;  // sides: farther off, a point lies in another cell than its own
   const double range = rmsRange(*expected.scan.points);
   const Matrix6 free = covarianceWithLocked(expected.guess_covariance, expected.locked);
   if (!(WidestDoubt(free, range).displacement > kBasin * side)) {

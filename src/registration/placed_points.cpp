@@ -84,7 +84,7 @@ PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& ter
 
 double rmsRange(const std::vector<ScanPoint>& points)
 {
-  constexpr double kLeast = 1e-3;  // m: what is no range is divided by
+  constexpr double kLeast = 1e-3;  // m: turns are divided by it
   double squares = 0.0;
   for (const ScanPoint& point : points) {
     squares += static_cast<double>(point.x * point.x + point.y * point.y + point.z * point.z);
