@@ -33,9 +33,13 @@ Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
 }
 
 /// What fills a cell evenly goes on beyond it, and tells nothing of the way along it: its variance is the squared side
-/// over 12.
-Eigen::Matrix3d observabilityAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& variance, double side)
+/// over 12. Of two rings or three, that depends on how many of them the cell happens to hold; so what fills the cell
+/// around evenly does not tell either.
+Eigen::Matrix3d observabilityAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& own, const CellSums& around,
+                                   double side)
 {
+  const Eigen::Matrix3d wider = 0.25 * (axes.transpose() * covarianceOf(around, meanOf(around)) * axes);
+  const Eigen::Vector3d variance = own.cwiseMax(wider.diagonal());
   constexpr double kEven = 12.0;
   constexpr double kChance = 1.25;  // as few points vary by chance
   const Eigen::Array3d filled = kEven / (side * side) * variance.array();
@@ -65,7 +69,7 @@ void CellSums::add(double x, double y, double z, std::uint32_t laser)
   ++count;
 }
 
-CellFit fitOf(const CellSums& sums, double side)
+CellFit fitOf(const CellSums& sums, double side, const CellSums* around)
 {
   CellFit fit;
   const int lasers = __builtin_popcountll(sums.lasers);
@@ -90,12 +94,12 @@ CellFit fitOf(const CellSums& sums, double side)
     shape.extent = static_cast<float>(variance[1]);
     const std::array<float, 3> wide = single(eigen.eigenvectors().col(2));
     fit.along = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
-  } else if (variance[0] < kByNoise) {
+  } else if (variance[0] < kByNoise || around == nullptr) {
     fit.kind = SurfaceKind::unknown;
   } else {
     fit.kind = SurfaceKind::point;
     Eigen::Map<Eigen::Matrix3f>(fit.along.data()) =
-        observabilityAmong(eigen.eigenvectors(), variance, side).cast<float>();
+        observabilityAmong(eigen.eigenvectors(), variance, *around, side).cast<float>();
   }
   return fit;
 }

@@ -61,7 +61,8 @@ VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
   if (state >= VoxelCells::kKnown) {
     return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, content.along};
   }
-  own = pcl_floam::fitOf(content.sums, sideOf(found.level));
+  const CellSums* around = cell.parent != 0 ? &cells_.content(cell.parent).sums : nullptr;
+  own = pcl_floam::fitOf(content.sums, sideOf(found.level), around);
   if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
     cell.shape = own.shape;
     content.along = own.along;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -27,22 +28,42 @@ TrackSettings withoutHorizon(TrackSettings settings)
 
 }  // namespace
 
-BackwardPass::BackwardPass(const std::vector<Sweep>& kept, const std::vector<SweepPose>& forwards,
-                           const TrackSettings& settings)
-    : back_(withoutHorizon(settings)), count_(forwards.size()), in_map_(count_)
+BackwardPass::BackwardPass(std::vector<SweepPose> forwards, const TrackSettings& settings)
+    : back_(withoutHorizon(settings)),
+      forwards_(std::move(forwards)),
+      found_(forwards_.size() - kTrusted),
+      count_(forwards_.size()),
+      left_(found_.size()),
+      in_map_(count_)
+{
+}
+
+bool BackwardPass::step(const std::vector<Sweep>& kept, WorkShare& share)
+{
+  if (!share.take(has_begun_ ? WorkShare::kBack : WorkShare::kTurnBack)) {
+    return false;
+  }
+  if (has_begun_) {
+    findNext(kept);
+  } else {
+    begin(kept);
+  }
+  return true;
+}
+
+void BackwardPass::begin(const std::vector<Sweep>& kept)
 {
   std::vector<Sweep> sweeps;
   std::vector<SweepPose> last;
-  left_ = count_ - kTrusted;
-  found_.resize(left_);
   for (std::size_t k = count_; k-- > left_;) {
-    last.push_back(forwards[k]);
+    last.push_back(forwards_[k]);
     sweeps.push_back(backwards(kept, k, count_));
   }
-  back_.begin(sweeps, last, keyframesAmong(last, settings));
+  back_.begin(sweeps, last, keyframesAmong(last, back_.settings()));
+  has_begun_ = true;
 }
 
-void BackwardPass::step(const std::vector<Sweep>& kept)
+void BackwardPass::findNext(const std::vector<Sweep>& kept)
 {
   const Sweep sweep = backwards(kept, --left_, count_);
   if (!back_.step(sweep).report.hasConverged()) {

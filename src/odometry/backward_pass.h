@@ -3,6 +3,7 @@
 #pragma once
 
 #include "odometry/track.h"
+#include "odometry/work_share.h"
 
 #include <cstddef>
 #include <vector>
@@ -15,13 +16,13 @@ class BackwardPass {
 public:
   static constexpr std::size_t kTrusted = 4;  ///< last poses, from which the others are found
 
-  /// \param kept sweeps
-  /// \param forwards poses that were found of the first of them, more than those that are trusted
-  BackwardPass(const std::vector<Sweep>& kept, const std::vector<SweepPose>& forwards, const TrackSettings& settings);
+  /// \param forwards poses that were found of the first sweeps, more than those that are trusted
+  BackwardPass(std::vector<SweepPose> forwards, const TrackSettings& settings);
 
   [[nodiscard]] bool isDone() const { return left_ == 0; }
-  /// Registers the next sweep before.
-  void step(const std::vector<Sweep>& kept);
+  /// Makes the map of the trusted sweeps, then registers the next sweep before, as far as the share goes.
+  /// \return whether it did
+  bool step(const std::vector<Sweep>& kept, WorkShare& share);
   /// Whether all were found.
   [[nodiscard]] bool hasFound() const { return isDone() && !found_.empty(); }
   /// Of all sweeps, those from the trusted ones on as they were found forwards; none if one was not found.
@@ -34,10 +35,15 @@ public:
   [[nodiscard]] Track& track() { return back_; }
 
 private:
+  void begin(const std::vector<Sweep>& kept);
+  void findNext(const std::vector<Sweep>& kept);
+
   Track back_;
+  std::vector<SweepPose> forwards_;
   std::vector<SweepPose> found_;  // before the trusted ones
   std::size_t count_ = 0;         // of sweeps when it began
-  std::size_t left_ = 0;
+  std::size_t left_ = 0;          // to be found
+  bool has_begun_ = false;
   std::size_t in_map_ = 0;
 };
 

@@ -47,23 +47,38 @@ SurfaceRegistration CandidateMotions::followFirst(const std::vector<Sweep>& kept
   return *first;
 }
 
-void CandidateMotions::goOn(int registrations, const std::vector<Sweep>& kept, Hypotheses& hypotheses)
+void CandidateMotions::goOn(WorkShare& share, const std::vector<Sweep>& kept, Hypotheses& hypotheses)
 {
-  while (registrations > 0 && !areTried()) {
+  while (!areTried()) {
     if (late_) {
-      late_->step(kept[late_->poses.size()], Rivals::motions, true);
-      registrations -= 1;
-    } else if (!waiting_.empty()) {
-      begin(kept);
-      registrations -= 2;  // its rounds
-    } else {
-      registrations -= static_cast<int>(search_.goOn(static_cast<std::size_t>(registrations)));
-      if (search_.isDone()) {
-        enqueue();
+      if (!share.take(WorkShare::kCatchUp)) {
+        return;
       }
+      late_->step(kept[late_->poses.size()], Rivals::motions, true);
+    } else if (!waiting_.empty()) {
+      if (!share.take(WorkShare::kBegin)) {
+        return;
+      }
+      begin(kept);
+    } else if (!look(share)) {
+      return;
     }
     compare(kept, hypotheses);
   }
+}
+
+/// \return whether there was anything left of the share
+bool CandidateMotions::look(WorkShare& share)
+{
+  std::size_t looks = 0;
+  while (looks < search_.left() && share.take(WorkShare::kLook)) {
+    ++looks;
+  }
+  search_.goOn(looks);
+  if (search_.isDone()) {
+    enqueue();
+  }
+  return looks > 0;
 }
 
 /// Those that have turned out to be likely wait to be tried.
@@ -78,8 +93,20 @@ void CandidateMotions::enqueue()
     }
     enqueued_.push_back(motion);
     for (std::size_t direction = 0; direction < directions_.size(); ++direction) {
-      waiting_.push_back({motion, direction});
+      if (std::find(given_up_.begin(), given_up_.end(), directions_[direction].direction) == given_up_.end()) {
+        waiting_.push_back({motion, direction});
+      }
     }
+  }
+}
+
+void CandidateMotions::giveUpDirection(double direction)
+{
+  const auto isGivenUp = [&](const Candidate& c) { return directions_[c.direction].direction == direction; };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isGivenUp), waiting_.end());
+  given_up_.push_back(direction);
+  if (late_ && late_->direction() == direction) {
+    late_.reset();
   }
 }
 

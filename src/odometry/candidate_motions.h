@@ -4,6 +4,7 @@
 
 #include "odometry/first_motion.h"
 #include "odometry/hypotheses.h"
+#include "odometry/work_share.h"
 
 #include <cstddef>
 #include <deque>
@@ -26,9 +27,12 @@ public:
   /// \return its registration, or the first that failed
   SurfaceRegistration followFirst(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
-  /// Goes on by so many registrations, or one more.
+  /// Goes on as far as a sweep bears it.
   /// \param kept sweeps, all of which the hypotheses have taken
-  void goOn(int registrations, const std::vector<Sweep>& kept, Hypotheses& hypotheses);
+  void goOn(WorkShare& share, const std::vector<Sweep>& kept, Hypotheses& hypotheses);
+
+  /// None in which time runs like that.
+  void giveUpDirection(double direction);
 
   /// Whether some are known that are not tried yet.
   [[nodiscard]] bool areWaiting() const { return late_ || !waiting_.empty(); }
@@ -42,11 +46,13 @@ private:
   };
 
   void enqueue();
+  bool look(WorkShare& share);
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
   FirstMotionSearch search_;
   std::vector<TrackSettings> directions_;
+  std::vector<double> given_up_;  // directions
   std::vector<Vector6> enqueued_;
   std::deque<Candidate> waiting_;
   std::optional<Hypothesis> late_;

@@ -107,16 +107,14 @@ std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<Firs
   return reports;
 }
 
-std::size_t FirstMotionSearch::goOn(std::size_t looks)
+void FirstMotionSearch::goOn(std::size_t looks)
 {
   const auto begin = looks_.begin() + static_cast<std::ptrdiff_t>(looked_);
-  looks = std::min(looks, looks_.size() - looked_);
   lookAt({begin, begin + static_cast<std::ptrdiff_t>(looks)});
   looked_ += looks;
   if (isDone()) {
     tracks_.clear();
   }
-  return looks;
 }
 
 double FirstMotionSearch::same() const

@@ -23,9 +23,11 @@ public:
   FirstMotionSearch(const Sweep& first, const Sweep& second, const TrackSettings& settings);
 
   /// Whether nothing is left to look at.
-  [[nodiscard]] bool isDone() const { return looked_ == looks_.size(); }
-  /// Looks at the next few. \return so many
-  std::size_t goOn(std::size_t looks);
+  [[nodiscard]] bool isDone() const { return left() == 0; }
+  /// So many looks.
+  [[nodiscard]] std::size_t left() const { return looks_.size() - looked_; }
+  /// Looks at the next few, at most those that are left.
+  void goOn(std::size_t looks);
   /// Velocities per period, the likeliest of those found so far first; none if the sweeps do not fit at all.
   [[nodiscard]] std::vector<Vector6> likelyMotions() const;
   /// m a period, within which two motions are one: a registration finds either from the other.

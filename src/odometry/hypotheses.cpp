@@ -146,11 +146,23 @@ void Hypotheses::updateMaps(const Sweep& sweep)
                  [&](std::size_t i) { all_[i].track.updateMap(sweep, took_in_ && !all_[i].is_lost); });
 }
 
-void Hypotheses::giveUpDirections(double behind)
+std::vector<double> Hypotheses::giveUpDirections(double behind)
 {
   const double best = std::min_element(all_.begin(), all_.end(), isLikelier)->evidence();  // the first of that order
-  const auto isBehind = [&](const Hypothesis& hypothesis) { return hypothesis.evidence() < best - behind; };
-  all_.erase(std::remove_if(all_.begin(), all_.end(), isBehind), all_.end());
+  std::vector<double> given_up;
+  for (const Hypothesis& one : all_) {
+    const auto keepsUp = [&](const Hypothesis& other) {
+      return other.direction() == one.direction() && !(other.evidence() < best - behind);
+    };
+    if (std::none_of(all_.begin(), all_.end(), keepsUp)) {
+      given_up.push_back(one.direction());
+    }
+  }
+  const auto isGivenUp = [&](const Hypothesis& one) {
+    return std::find(given_up.begin(), given_up.end(), one.direction()) != given_up.end();
+  };
+  all_.erase(std::remove_if(all_.begin(), all_.end(), isGivenUp), all_.end());
+  return given_up;
 }
 
 void Hypotheses::giveUpMotions()

@@ -43,6 +43,11 @@ private:
   void keepEvidenceOf(const std::vector<std::uint32_t>& places);
 };
 
+/// A direction of time whose evidence is so much less than the best one's is given up, once it is settled how the
+/// sensor began to move: of the sweeps that it remembers, in which nothing else differs. Nor do maps but for keyframes
+/// among the first sweeps, unless these were not found once more, or more came than are kept.
+constexpr double kWrongDirection = 15.0;
+
 /// Which is the best one.
 enum class Preference : std::uint8_t { likeliest, least_motion };
 
@@ -71,9 +76,10 @@ public:
   /// have come to move as a likelier one does, and all but a few of each direction. The likeliest becomes the first.
   void giveUpMotions();
 
-  /// Those that match no more, or have fallen behind the best one by so much evidence. The first one stays that until
-  /// then: what is less is noise, by which poses would go back and forth.
-  void giveUpDirections(double behind);
+  /// Directions of time of which all match no more, or have fallen behind the best one by so much evidence. The first
+  /// one stays that until then: what is less is noise, by which poses would go back and forth.
+  /// \return those that were given up
+  std::vector<double> giveUpDirections(double behind);
 
   /// Whether a late one surely explains sweeps worse up to the one that it took last, or is no other than one that is
   /// about as likely.

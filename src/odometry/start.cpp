@@ -1,7 +1,5 @@
 #include "odometry/start.h"
 
-#include "common/side_by_side.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <utility>
@@ -28,7 +26,10 @@ SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& 
     candidates_.reset();
   } else {
     constexpr int kOfTheFirst = 8;  // registrations with which that was found
-    candidates_->goOn(settings.start_effort - kOfTheFirst, kept_, hypotheses);
+    if (settings.start_effort > kOfTheFirst) {
+      WorkShare share(settings.start_effort - kOfTheFirst);
+      candidates_->goOn(share, kept_, hypotheses);
+    }
     found = hypotheses.front().last;
   }
   return found;
@@ -51,14 +52,22 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   return true;
 }
 
+WorkShare Start::shareBeside(const Hypotheses& hypotheses)
+{
+  const double others = static_cast<double>(hypotheses.size()) - 1.0;
+  return WorkShare(hypotheses.front().track.settings().start_effort - WorkShare::kFollow * others);
+}
+
 /// After many sweeps rivals are still followed, but motions that have not been tried by then are not.
 void Start::follow(Hypotheses& hypotheses)
 {
   hypotheses.giveUpMotions();
+  giveUpDirections(hypotheses);
   if (kept_.size() == kMostKept) {
     candidates_.reset();
   } else if (candidates_) {
-    candidates_->goOn(hypotheses.front().track.settings().start_effort, kept_, hypotheses);
+    WorkShare share = shareBeside(hypotheses);
+    candidates_->goOn(share, kept_, hypotheses);
   }
   if (leavesNoTrace(hypotheses)) {
     hypotheses.putFirst(Preference::least_motion);
@@ -68,6 +77,21 @@ void Start::follow(Hypotheses& hypotheses)
   } else if (kept_.size() == kMostKept) {
     keeps_ = false;
     kept_.resize(kRevised);
+  }
+}
+
+/// What surely lost against another way of time need not be gone through once more. Maps differ by their keyframes,
+/// too.
+void Start::giveUpDirections(Hypotheses& hypotheses)
+{
+  constexpr double kSurely = 2.0 * kWrongDirection;
+  if (hypotheses.front().poses.size() <= kRememberedSweeps) {
+    return;
+  }
+  for (const double direction : hypotheses.giveUpDirections(kSurely)) {
+    if (candidates_) {
+      candidates_->giveUpDirection(direction);
+    }
   }
 }
 
@@ -98,7 +122,7 @@ void Start::beginRevision(Hypotheses& hypotheses)
   for (const Hypothesis& hypothesis : hypotheses.all()) {
     std::vector<SweepPose> first = hypothesis.poses;  // those found with a young map, and some that are trusted
     first.resize(std::min(first.size(), kRevised));
-    revisions_.push_back({hypothesis.number, BackwardPass(kept_, first, hypothesis.track.settings())});
+    revisions_.push_back({hypothesis.number, BackwardPass(std::move(first), hypothesis.track.settings())});
   }
   keyframes_ = keyframesAmong(hypotheses.front().poses, hypotheses.front().track.settings());
 }
@@ -112,14 +136,9 @@ void Start::revise(Hypotheses& hypotheses)
     return std::none_of(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revision.number; });
   };
   revisions_.erase(std::remove_if(revisions_.begin(), revisions_.end(), isLost), revisions_.end());
-  const TrackSettings& settings = hypotheses.front().track.settings();
-  const int passes = static_cast<int>(revisions_.size());
-  const int each = (settings.start_effort + passes - 1) / passes;
-  eachSideBySide(settings.threads, revisions_.size(), [&](std::size_t i) {
-    const auto own =
-        std::find_if(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revisions_[i].number; });
-    goOn(revisions_[i].pass, own->poses, each);
-  });
+  WorkShare share = shareBeside(hypotheses);
+  while (goOn(share, all)) {
+  }
   if (std::all_of(revisions_.begin(), revisions_.end(), [this](const Revision& r) { return isDone(r.pass); })) {
     settle(hypotheses);
   }
@@ -131,19 +150,27 @@ bool Start::isDone(const BackwardPass& pass) const
   return pass.isDone() && (!pass.hasFound() || !keeps_ || pass.inMap() == kept_.size());
 }
 
-void Start::goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int registrations) const
+/// The pass that has least behind it goes on.
+/// \return whether the share allows it, and one is left
+bool Start::goOn(WorkShare& share, const std::vector<Hypothesis>& all)
 {
-  constexpr double kTakeOne = 0.25;  // registrations, which take as long as a map does to take in a sweep
-  for (double left = registrations; left > 0.0 && !isDone(pass);) {
-    if (!pass.isDone()) {
-      pass.step(kept_);
-      left -= 1.0;
-    } else {
-      const std::size_t next = pass.inMap();
-      pass.takeNext(kept_[next], poses[next], keyframes_[next]);
-      left -= kTakeOne;
-    }
+  const auto next = std::min_element(revisions_.begin(), revisions_.end(), [](const Revision& a, const Revision& b) {
+    return a.pass.isDone() != b.pass.isDone() ? b.pass.isDone() : a.pass.inMap() < b.pass.inMap();
+  });
+  BackwardPass& pass = next->pass;
+  if (isDone(pass)) {
+    return false;
   }
+  if (!pass.isDone()) {
+    return pass.step(kept_, share);
+  }
+  const std::size_t k = pass.inMap();
+  if (keyframes_[k] && !share.take(WorkShare::kInsert)) {
+    return false;
+  }
+  const auto own = std::find_if(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == next->number; });
+  pass.takeNext(kept_[k], own->poses[k], keyframes_[k]);
+  return true;
 }
 
 /// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made: all

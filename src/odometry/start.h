@@ -45,10 +45,13 @@ private:
   [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
   void follow(Hypotheses& hypotheses);
+  void giveUpDirections(Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);
   void revise(Hypotheses& hypotheses);
   [[nodiscard]] bool isDone(const BackwardPass& pass) const;
-  void goOn(BackwardPass& pass, const std::vector<SweepPose>& poses, int registrations) const;
+  bool goOn(WorkShare& share, const std::vector<Hypothesis>& all);
+  /// Of the last sweep, beside those who take it.
+  [[nodiscard]] static WorkShare shareBeside(const Hypotheses& hypotheses);
   void settle(Hypotheses& hypotheses);
 
   std::shared_ptr<SpareMaps> spare_maps_ = std::make_shared<SpareMaps>();

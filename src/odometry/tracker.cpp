@@ -14,11 +14,6 @@ constexpr double kCellsPerRoot = 12.0;
 /// Points of one sweep enter the map no closer together than this part of its finest cells' side.
 constexpr double kMapSpacing = 0.3;
 
-/// A direction of time whose evidence is so much less than the best one's is given up, once it is settled how the
-/// sensor began to move: of the sweeps that it remembers, in which nothing else differs. Nor do maps but for keyframes
-/// among the first sweeps, unless these were not found once more, or more came than are kept.
-constexpr double kWrongDirection = 15.0;
-
 /// Bad first sweeps must not hold up the rest for ever.
 constexpr int kMostFailures = 5;
 

@@ -114,6 +114,28 @@ TEST(VoxelPyramid, WhatFillsItsCellEvenlyTellsNothingOfTheWayAlong)
   EXPECT_GT(edge.observability(1, 1) + edge.observability(2, 2), 3.0 * edge.observability(0, 0));
 }
 
+/// How many rings a cell happens to hold is no sign of where a surface ends.
+TEST(VoxelPyramid, ACornerThatRingsCrossTellsNothingOfTheWayUp)
+{
+  for (double step = 0.4 * kSide; step < 0.9 * kSide; step += 0.05 * kSide) {
+    VoxelPyramid map(kSide);
+    std::mt19937 random(5);
+    std::uint32_t ring = 0;
+    for (double up = -3.0; up <= 3.0; up += step, ++ring) {
+      for (int i = 0; i < 300; ++i) {
+        const double out = 0.1 + 0.5 * (1.0 + test::uniform(random, 1.0));
+        map.insert(i % 2 == 0 ? Eigen::Vector3d(0.1, out, up) : Eigen::Vector3d(out, 0.1, up), ring);
+      }
+    }
+    for (double up = -2.0; up <= 2.0; up += 0.1) {
+      const Surface corner = map.surfaceAt({0.15, 0.15, up}, kStranger);
+      if (corner.kind == SurfaceKind::point) {
+        EXPECT_LT(corner.observability(2, 2), 0.2) << "rings " << step << " apart, at " << up;
+      }
+    }
+  }
+}
+
 TEST(VoxelPyramid, LooksAtAWiderScaleWhereTheFinestShowsOneLaser)
 {
   VoxelPyramid map(kSide);

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace pcl_floam::test {
 namespace {
@@ -67,6 +70,40 @@ TEST(OdometryIsTold, AMapToLocalizeInMustHoldSomething)
 {
   Odometry<PointXYZIRT> odometry(defaults());
   EXPECT_THROW(odometry.localizeIn(KeyframeVoxelMap(), SE3()), std::invalid_argument);
+}
+
+/// Above its last beams rings are all that moves with the sensor between four bare walls.
+TEST(OdometryIsTold, NothingOfTheWayUpAShaft)
+{
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
+  constexpr int kManyScans = 60;
+  Room shaft;
+  shaft.walls = {{-1.5, -2.8, -1.2}, {1.5, 2.8, 60.0}};
+  shaft.furniture.clear();
+  for (double z = 0.0; z < 10.0; z += 3.2) {
+    shaft.furniture.push_back({{-1.5, 2.6, z}, {1.5, 2.8, z + 0.25}});
+    shaft.furniture.push_back({{-1.5, -0.5, z + 1.0}, {-1.3, 0.2, z + 1.5}});
+  }
+  Lidar lidar;
+  lidar.rings = 16;
+  lidar.lowest = -15.0;
+  const Path up = [](double t) {
+    return SE3(Eigen::Matrix3d::Identity(), Eigen::Vector3d(0.0, 0.0, 0.08 * std::max(0.0, t - 5.0)));
+  };
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0.0, 0.01);  // m
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kManyScans; ++k) {
+    std::vector<Return> returns = sweepRoom(shaft, lidar, [&](double fraction) { return up(k + fraction); });
+    for (Return& r : returns) {
+      r.point *= 1.0 + noise(random) / r.point.norm();
+    }
+    const OdometryReport& report = odometry.track(toCloud(returns));
+    const bool is_said_to_be_right = report.state == TrackingState::tracked && !report.provisional;
+    EXPECT_FALSE(is_said_to_be_right && error(report.world_T_sensor, up, k) > 0.3) << "scan " << k;
+  }
 }
 
 MotionHint wheelsOf(const Path& path, int k)

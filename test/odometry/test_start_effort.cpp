@@ -63,7 +63,7 @@ protected:
 
 TEST_F(StartEffort, NoScanBearsManyTimesAsMuchAsAnother)
 {
-  EXPECT_LT(greatestShare(runWith(OdometryParameters().start_effort)), 8.0);
+  EXPECT_LT(greatestShare(runWith(OdometryParameters().start_effort)), 6.0);
   EXPECT_GT(greatestShare(runWith(kAllAtOnce)), 12.0);
 }
 
