@@ -23,7 +23,7 @@ struct ReturnBatch {
 
   [[nodiscard]] ScanPoint point(std::size_t n) const
   {
-    return {x[n], y[n], z[n], 0.5F, laser[n], index[n], place[n], {}};
+    return {x[n], y[n], z[n], 0.5F, laser[n], index[n], place[n], {}, {}};
   }
 };
 

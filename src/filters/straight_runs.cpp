@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace pcl_floam {
 
@@ -19,33 +21,43 @@ constexpr float kStraight = 0.1F;
 /// Steps of one surface do not differ by more than this factor from one return to the next few.
 constexpr float kUneven = 3.0F;
 /// Two neighbours have no greater angle between them, rad (1.2 degrees: three steps of a coarse head): others have lost
-/// what was between them, as posts before the sky have.
+/// what was between them, as posts before the sky have. Scan lines may be farther from each other (6 degrees).
 constexpr float kGap = 0.02F;
+constexpr float kGapAcross = 0.1F;
 /// Two returns that lie behind one another are of two things: the least sine of the angle between step and ray.
 constexpr float kBehind = 0.05F;
 
-/// Neighbours on a scan line, of which some about the middle one are on a straight run. Lengths are compared by their
-/// squares.
+/// Neighbours of a return, in the order in which they lie, and itself in the middle.
+struct Neighborhood {
+  static constexpr std::ptrdiff_t kPlaces = 2 * kAside + 1;
+
+  std::array<float, kPlaces> x, y, z;  // beyond its ends anything finite stands, which is not used
+  std::ptrdiff_t first = kAside;
+  std::ptrdiff_t last = kAside;
+
+  void put(std::ptrdiff_t i, const CloudView& cloud, std::int32_t index)
+  {
+    const auto n = static_cast<std::size_t>(i);
+    const auto k = static_cast<std::size_t>(index);
+    x[n] = cloud.x(k);
+    y[n] = cloud.y(k);
+    z[n] = cloud.z(k);
+  }
+};
+
+/// Some of a return's neighbours are on a straight run with it. Lengths are compared by their squares.
 class StraightRun {
 public:
-  /// \param place the point's own, between \p begin and \p end of its line
-  StraightRun(const ScanReturns& returns, std::ptrdiff_t place, std::ptrdiff_t begin, std::ptrdiff_t end)
-      : low_(kAside - std::min(kAside, place - begin)), high_(kAside + std::min(kAside, end - 1 - place))
+  /// \param gap the greatest angle between neighbours, rad
+  StraightRun(const Neighborhood& neighbors, float gap)
+      : x_(neighbors.x), y_(neighbors.y), z_(neighbors.z), low_(neighbors.first), high_(neighbors.last)
   {
-    for (std::ptrdiff_t i = 0; i < kPlaces; ++i) {  // beyond the line's ends its last points stand, which are not used
-      const std::ptrdiff_t at = place + std::clamp(i, low_, high_) - kAside;
-      const auto k = static_cast<std::size_t>(returns.lines.index[static_cast<std::size_t>(at)]);
-      const auto n = static_cast<std::size_t>(i);
-      x_[n] = returns.cloud.x(k);
-      y_[n] = returns.cloud.y(k);
-      z_[n] = returns.cloud.z(k);
-    }
     lookAtSteps();
     for (std::ptrdiff_t i = kAside; i > low_; --i) {
-      low_ = areNext(i - 1) ? low_ : i;
+      low_ = areNext(i - 1, gap) ? low_ : i;
     }
     for (std::ptrdiff_t i = kAside; i < high_; ++i) {
-      high_ = areNext(i) ? high_ : i;
+      high_ = areNext(i, gap) ? high_ : i;
     }
     if (isRun(low_, high_)) {  // as most are
       first_ = low_;
@@ -67,10 +79,8 @@ public:
   }
 
 private:
-  static constexpr std::ptrdiff_t kPlaces = 2 * kAside + 1;
-  static constexpr std::size_t kSteps = 8;  ///< what registers hold, the last two of nothing
-  template <std::size_t count>
-  using Column = std::array<float, count>;
+  static constexpr std::size_t kSteps = Neighborhood::kPlaces - 1;
+  using Column = std::array<float, kSteps>;
 
   [[nodiscard]] Eigen::Vector3f at(std::ptrdiff_t i) const
   {
@@ -96,10 +106,10 @@ private:
   }
 
   /// Whether nothing is missing between a place and the one after it.
-  [[nodiscard]] bool areNext(std::ptrdiff_t i) const
+  [[nodiscard]] bool areNext(std::ptrdiff_t i, float gap) const
   {
     const auto n = static_cast<std::size_t>(i);
-    return dot_[n] > 0.0F && squared_cross_[n] < kGap * kGap * dot_[n] * dot_[n];
+    return dot_[n] > 0.0F && squared_cross_[n] < gap * gap * dot_[n] * dot_[n];
   }
 
   /// Takes a neighbour in, or ends the run on its side.
@@ -147,31 +157,126 @@ private:
     return true;
   }
 
-  Column<kSteps + 1> x_{};
-  Column<kSteps + 1> y_{};
-  Column<kSteps + 1> z_{};
-  Column<kSteps> squared_step_{};  // from each place to the next
-  Column<kSteps> squared_cross_{};
-  Column<kSteps> dot_{};
+  const std::array<float, Neighborhood::kPlaces>&x_, &y_, &z_;
+  Column squared_step_{};  // from each place to the next
+  Column squared_cross_{};
+  Column dot_{};
   std::ptrdiff_t low_;
   std::ptrdiff_t high_;
   std::ptrdiff_t first_ = kAside;
   std::ptrdiff_t last_ = kAside;
 };
 
+/// Of a scan, the neighbours of its returns.
+class ScanNeighbors {
+public:
+  explicit ScanNeighbors(const ScanReturns& returns) : cloud_(returns.cloud), lines_(returns.lines) {}
+
+  /// Whether the scan lines have a point where it says.
+  [[nodiscard]] bool knows(const ScanPoint& point) const
+  {
+    if (!lines_.valid() || point.laser >= lines_.lines()) {
+      return false;
+    }
+    const bool is_there = lines_.begin[point.laser] <= point.place && point.place < lines_.begin[point.laser + 1];
+    return is_there && indexAt(point.place) == point.index;
+  }
+
+  [[nodiscard]] Neighborhood along(const ScanPoint& point) const
+  {
+    Neighborhood neighbors;
+    neighbors.first = kAside - std::min<std::ptrdiff_t>(kAside, point.place - lines_.begin[point.laser]);
+    neighbors.last = kAside + std::min<std::ptrdiff_t>(kAside, lines_.begin[point.laser + 1] - 1 - point.place);
+    for (std::ptrdiff_t i = 0; i < Neighborhood::kPlaces; ++i) {
+      neighbors.put(i, cloud_, indexAt(point.place + std::clamp(i, neighbors.first, neighbors.last) - kAside));
+    }
+    return neighbors;
+  }
+
+  /// On the next scan lines, in nearly the same direction. Fastest for points that follow each other.
+  [[nodiscard]] Neighborhood across(const ScanPoint& point)
+  {
+    Neighborhood neighbors;
+    for (std::ptrdiff_t i = 0; i < Neighborhood::kPlaces; ++i) {
+      neighbors.put(i, cloud_, point.index);
+    }
+    if (point.laser > 0 && areAny(point.laser - 1)) {
+      neighbors.put(--neighbors.first, cloud_, indexAt(towards(point, point.laser - 1, below_)));
+    }
+    if (point.laser + 1 < lines_.lines() && areAny(point.laser + 1)) {
+      neighbors.put(++neighbors.last, cloud_, indexAt(towards(point, point.laser + 1, above_)));
+    }
+    return neighbors;
+  }
+
+private:
+  [[nodiscard]] std::int32_t indexAt(std::ptrdiff_t place) const
+  {
+    return lines_.index[static_cast<std::size_t>(place)];
+  }
+  [[nodiscard]] bool areAny(std::uint32_t line) const { return lines_.begin[line] < lines_.begin[line + 1]; }
+
+  /// Cosine of the angle between two rays, but for the length of \p ray.
+  [[nodiscard]] float nearness(const Eigen::Vector3f& ray, std::ptrdiff_t place) const
+  {
+    const auto k = static_cast<std::size_t>(indexAt(place));
+    const Eigen::Vector3f other(cloud_.x(k), cloud_.y(k), cloud_.z(k));
+    return ray.dot(other) / std::sqrt(std::max(other.squaredNorm(), kNoRange));
+  }
+
+  /// What was found last: how much farther on another line the same direction is than on a point's own.
+  struct Lead {
+    std::uint32_t of = 0xFFFFFFFFU;  // a line
+    std::ptrdiff_t ahead = 0;
+  };
+
+  /// The place on another line: from where the last one leads, to where it is no nearer.
+  [[nodiscard]] std::ptrdiff_t towards(const ScanPoint& point, std::uint32_t line, Lead& lead) const
+  {
+    const std::ptrdiff_t begin = lines_.begin[line];
+    const std::ptrdiff_t last = lines_.begin[line + 1] - 1;
+    if (lead.of != point.laser) {  // as if both lines lacked nothing
+      const std::ptrdiff_t own = lines_.begin[point.laser];
+      lead.of = point.laser;
+      lead.ahead =
+          begin + (point.place - own) * (last + 1 - begin) / (lines_.begin[point.laser + 1] - own) - point.place;
+    }
+    const Eigen::Vector3f ray(point.x, point.y, point.z);
+    std::ptrdiff_t place = std::clamp(point.place + lead.ahead, begin, last);
+    float nearest = nearness(ray, place);
+    for (const std::ptrdiff_t step : {1, -1}) {
+      for (int steps = 0; steps < kMostSteps && begin <= place + step && place + step <= last; ++steps) {
+        const float next = nearness(ray, place + step);
+        if (!(next > nearest)) {
+          break;
+        }
+        nearest = next;
+        place += step;
+      }
+    }
+    lead.ahead = place - point.place;
+    return place;
+  }
+
+  static constexpr float kNoRange = 1e-12F;  ///< m^2
+  /// As many returns as a line may have lost: a tenth of a turn of most lidars.
+  static constexpr int kMostSteps = 200;
+
+  const CloudView& cloud_;
+  const ScanLines& lines_;
+  Lead below_;
+  Lead above_;
+};
+
 }  // namespace
 
 void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points)
 {
-  const ScanLines& lines = returns.lines;
+  ScanNeighbors neighbors(returns);
   for (ScanPoint& point : points) {
-    if (lines.valid() && point.laser < lines.lines()) {
-      const std::ptrdiff_t begin = lines.begin[point.laser];
-      const std::ptrdiff_t end = lines.begin[point.laser + 1];
-      const bool is_there = begin <= point.place && point.place < end;
-      if (is_there && lines.index[static_cast<std::size_t>(point.place)] == point.index) {
-        Eigen::Vector3f::Map(point.run.data()) = StraightRun(returns, point.place, begin, end).vector();
-      }
+    if (neighbors.knows(point)) {
+      Eigen::Vector3f::Map(point.run.data()) = StraightRun(neighbors.along(point), kGap).vector();
+      Eigen::Vector3f::Map(point.run_across.data()) = StraightRun(neighbors.across(point), kGapAcross).vector();
     }
   }
 }

@@ -94,12 +94,14 @@ CellFit fitOf(const CellSums& sums, double side, const CellSums* around)
     shape.extent = static_cast<float>(variance[1]);
     const std::array<float, 3> wide = single(eigen.eigenvectors().col(2));
     fit.along = {wide[0], wide[1], wide[2], static_cast<float>(variance[2])};
-  } else if (variance[0] < kByNoise || around == nullptr) {
+  } else if (variance[0] < kByNoise) {
     fit.kind = SurfaceKind::unknown;
   } else {
     fit.kind = SurfaceKind::point;
-    Eigen::Map<Eigen::Matrix3f>(fit.along.data()) =
-        observabilityAmong(eigen.eigenvectors(), variance, *around, side).cast<float>();
+    if (around != nullptr) {
+      Eigen::Map<Eigen::Matrix3f>(fit.along.data()) =
+          observabilityAmong(eigen.eigenvectors(), variance, *around, side).cast<float>();
+    }
   }
   return fit;
 }

@@ -43,7 +43,7 @@ struct CellFit {
 /// A shape that chance, noise or the sampling pattern of a single laser would give is none.
 /// \param side   m, of the cell
 /// \param around the cell of twice the side that holds it; nullptr: there is none, and so no telling whether what is
-///               neither plane nor line ends with the cell
+///               neither plane nor line ends with the cell: no displacement shows
 [[nodiscard]] CellFit fitOf(const CellSums& sums, double side, const CellSums* around);
 
 }  // namespace pcl_floam

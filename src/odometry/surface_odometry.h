@@ -153,7 +153,7 @@ struct SurfaceOdometry : OdometryRun {
     return tracker.step(sweep);
   }
 
-  void placeTrack() { world_T_track = initial_pose * tracker.poses().front().at(poseFraction()).inverse(); }
+  void placeTrack() { world_T_track = initial_pose * tracker.firstPose(poseFraction()).inverse(); }
 
   /// Of the sweep, as time runs in it.
   [[nodiscard]] double poseFraction() const

@@ -15,7 +15,7 @@ struct TrackSettings {
   DegreesOfFreedom locked = {};
   double horizon = 150.0;  // m: what lies farther from the sensor is forgotten
   int threads = 1;
-  int start_effort = 8;  // registrations of one sweep's share of a start, beyond its own
+  int start_effort = 10;  // registrations of one sweep's share of a start, beyond its own
   OdometryComponents components = {};
   std::weak_ptr<class SpareMaps> spare_maps = {};  // of which maps are made, and where they go in the end
   double side = 0.0;                               // m, of the map's finest cells; 0: not known yet

@@ -1,5 +1,6 @@
 #include "odometry/tracker.h"
 
+#include "motion/rest.h"
 #include "odometry/place_evidence.h"
 
 #include <utility>
@@ -45,6 +46,16 @@ void Tracker::place(const SE3& pose)
   for (Hypothesis& hypothesis : hypotheses_.all()) {
     hypothesis.track.place(pose);
   }
+}
+
+SE3 Tracker::firstPose(double instant) const
+{
+  Rest rest;
+  for (const SweepPose& pose : poses()) {
+    rest.take(pose.at(instant), track().motion().poseCovariance());
+  }
+  const bool rests = rest.isAtRest() && rest.poses() == static_cast<int>(poses().size());
+  return rests ? rest.pose() : poses().front().at(instant);
 }
 
 void Tracker::sample(const ScanReturns& returns, Sweep& sweep)

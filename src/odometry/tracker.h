@@ -61,6 +61,9 @@ public:
   /// Of the sweeps since the first one, while \ref mayCorrect and right after; then of some as long as there are
   /// several tracks.
   [[nodiscard]] const std::vector<SweepPose>& poses() const { return hypotheses_.front().poses; }
+  /// Of the first sweep, at an instant of it, while \ref poses reach back to it. A sensor that has stood still since
+  /// then was where its poses are in the mean.
+  [[nodiscard]] SE3 firstPose(double instant) const;
 
 private:
   struct PriorMap {

@@ -13,7 +13,7 @@ public:
   static constexpr double kLook = 1.5;      ///< thinned sweeps are registered with each other
   static constexpr double kBegin = 4.0;     ///< a track begins with the first two sweeps, in two rounds
   static constexpr double kCatchUp = 2.0;   ///< a track takes a sweep of before
-  static constexpr double kBack = 3.0;      ///< a sweep is found once more
+  static constexpr double kBack = 2.0;      ///< a sweep is found once more
   static constexpr double kTurnBack = 5.0;  ///< a map is made of the last sweeps, and its shapes when it is asked
   static constexpr double kInsert = 0.5;    ///< a map takes in a sweep
 

@@ -93,10 +93,10 @@ SurfaceSums SurfaceResiduals::chunkOf(const PlacedPoints& placed) const
   return sums;
 }
 
-/// In the target's axes.
-Eigen::Vector3d SurfaceResiduals::runOf(const PlacedPoint& point) const
+/// Into the target's axes.
+Eigen::Vector3d SurfaceResiduals::turned(const std::array<float, 3>& run) const
 {
-  return sensor.pose().rotation * Eigen::Vector3f::Map(point.measured->run.data()).cast<double>();
+  return sensor.pose().rotation * Eigen::Vector3f::Map(run.data()).cast<double>();
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
@@ -123,8 +123,13 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
 {
   const double variance = varianceFrom(line);
   const Eigen::Vector3d from_center = p.place - line.center;
-  const Eigen::Vector3d whole_run = runOf(p);
-  const Eigen::Vector3d run = whole_run - line.direction * line.direction.dot(whole_run);
+  const auto acrossLine = [&](const std::array<float, 3>& measured) {
+    const Eigen::Vector3d whole = turned(measured);
+    return Eigen::Vector3d(whole - line.direction * line.direction.dot(whole));
+  };
+  const Eigen::Vector3d one = acrossLine(p.measured->run);
+  const Eigen::Vector3d next = acrossLine(p.measured->run_across);
+  const Eigen::Vector3d run = one.squaredNorm() < next.squaredNorm() ? next : one;
   const double squared_run = run.squaredNorm();
   const bool has_run = squared_run > kNoExtent;
   const Eigen::Vector3d other = has_run ? line.direction.cross(run).normalized() : line.direction.unitOrthogonal();
@@ -152,17 +157,18 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
 void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
 {
   const double variance = varianceFrom(near);
-  const Eigen::Vector3d run = runOf(p);
-  const double squared_run = run.squaredNorm();
   const Eigen::Vector3d off = p.place - near.center;
   Eigen::Vector3d seen = off;
   Eigen::Matrix3d observed = near.observability;
-  if (squared_run > kNoExtent) {  // S off and S observed S with S = 1 - (1 - k) run run^T / |run|^2
-    const double k = observedAlongRun(squared_run, variance);
-    const double unseen = (1.0 - k) / squared_run;
-    const Eigen::Vector3d along = unseen * (observed * run);
-    observed -= along * run.transpose() + run * along.transpose() - unseen * along.dot(run) * run * run.transpose();
-    seen -= unseen * run.dot(off) * run;
+  for (const std::array<float, 3>* measured : {&p.measured->run, &p.measured->run_across}) {
+    const Eigen::Vector3d run = turned(*measured);
+    const double squared_run = run.squaredNorm();
+    if (squared_run > kNoExtent) {  // S seen and S observed S with S = 1 - (1 - k) run run^T / |run|^2
+      const double unseen = (1.0 - observedAlongRun(squared_run, variance)) / squared_run;
+      const Eigen::Vector3d along = unseen * (observed * run);
+      observed -= along * run.transpose() + run * along.transpose() - unseen * along.dot(run) * run * run.transpose();
+      seen -= unseen * run.dot(seen) * run;
+    }
   }
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();

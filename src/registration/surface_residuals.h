@@ -5,6 +5,7 @@
 #include "registration/normal_equations.h"
 #include "registration/placed_points.h"
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -60,7 +61,7 @@ private:
   void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, ResidualRows& noise,
                SurfaceSums& sums) const;
   void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
-  [[nodiscard]] Eigen::Vector3d runOf(const PlacedPoint& point) const;
+  [[nodiscard]] Eigen::Vector3d turned(const std::array<float, 3>& run) const;
   [[nodiscard]] double weight(double squared, double variance, const Vector6& derivative, const PlacedPoint& p,
                               SurfaceSums& sums) const;
 };

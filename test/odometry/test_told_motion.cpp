@@ -78,7 +78,7 @@ TEST(ToldMotion, LastsOverAShortGapButNotOverALongOne)
 
 TEST(ToldMotion, TwoScansInARowTellTogether)
 {
-  constexpr double kHalf = 0.015;  // m
+  constexpr double kHalf = 0.025;  // m
   ToldMotion motion;
   motion.take(position(kHalf), 1.0);
   EXPECT_FALSE(motion.isTold());

@@ -26,6 +26,8 @@ struct ScanPoint {
   /// m: along its scan line, as long as the line goes on straight about the point; zero: it does not, or it is not
   /// known. See \ref findStraightRuns.
   std::array<float, 3> run = {};
+  /// m: the same across the scan lines, to the next ones on both sides.
+  std::array<float, 3> run_across = {};
 };
 
 /// All returns of a scan between two distances from the sensor, line after line; without scan lines in the cloud's
@@ -45,9 +47,10 @@ struct ScanReturns {
 void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Finds how far each point's scan line goes on straight about it, up to three neighbours to both sides and a step
-/// more. On such a run a return may have come from anywhere: of the way along it a return tells as little as the run is
-/// long. A wall on which a lidar's columns lie far apart then does not look like a row of posts that move along with
-/// the sensor. As measured: the sensor's turn from one neighbour to the next is neglected.
+/// more, and whether what it is on goes straight on across the next scan lines. On such a run a return may have come
+/// from anywhere: of the way along it a return tells as little as the run is long. A wall on which a lidar's columns lie
+/// far apart then does not look like a row of posts that move along with the sensor, nor one that its lines cross like
+/// a stack of bars. As measured: the sensor's turn from one neighbour to the next is neglected.
 /// \param[in,out] points of those returns; others, of which laser, place and index do not agree, keep their runs
 void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
