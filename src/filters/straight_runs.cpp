@@ -20,12 +20,19 @@ constexpr std::ptrdiff_t kAside = 3;
 constexpr float kStraight = 0.1F;
 /// Steps of one surface do not differ by more than this factor from one return to the next few.
 constexpr float kUneven = 3.0F;
-/// Two neighbours have no greater angle between them, rad (1.2 degrees: three steps of a coarse head): others have lost
-/// what was between them, as posts before the sky have. Scan lines may be farther from each other (6 degrees).
-constexpr float kGap = 0.02F;
-constexpr float kGapAcross = 0.1F;
-/// Two returns that lie behind one another are of two things: the least sine of the angle between step and ray.
-constexpr float kBehind = 0.05F;
+
+/// What neighbours on a run are to each other.
+struct RunLimits {
+  /// Two neighbours have no greater angle between them, rad: others have lost what was between them, as posts before
+  /// the sky have.
+  float gap;
+  /// Two returns that lie behind one another are of two things: the least sine of the angle between step and ray.
+  float behind;
+};
+/// 1.2 degrees are three steps of a coarse head.
+constexpr RunLimits kAlong = {0.02F, 0.05F};
+/// Scan lines are farther from each other, and so are things behind one another seen more from the side.
+constexpr RunLimits kAcross = {0.1F, 0.2F};
 
 /// Neighbours of a return, in the order in which they lie, and itself in the middle.
 struct Neighborhood {
@@ -48,16 +55,15 @@ struct Neighborhood {
 /// Some of a return's neighbours are on a straight run with it. Lengths are compared by their squares.
 class StraightRun {
 public:
-  /// \param gap the greatest angle between neighbours, rad
-  StraightRun(const Neighborhood& neighbors, float gap)
-      : x_(neighbors.x), y_(neighbors.y), z_(neighbors.z), low_(neighbors.first), high_(neighbors.last)
+  StraightRun(const Neighborhood& neighbors, const RunLimits& limits)
+      : x_(neighbors.x), y_(neighbors.y), z_(neighbors.z), limits_(limits), low_(neighbors.first), high_(neighbors.last)
   {
     lookAtSteps();
     for (std::ptrdiff_t i = kAside; i > low_; --i) {
-      low_ = areNext(i - 1, gap) ? low_ : i;
+      low_ = areNext(i - 1) ? low_ : i;
     }
     for (std::ptrdiff_t i = kAside; i < high_; ++i) {
-      high_ = areNext(i, gap) ? high_ : i;
+      high_ = areNext(i) ? high_ : i;
     }
     if (isRun(low_, high_)) {  // as most are
       first_ = low_;
@@ -106,10 +112,10 @@ private:
   }
 
   /// Whether nothing is missing between a place and the one after it.
-  [[nodiscard]] bool areNext(std::ptrdiff_t i, float gap) const
+  [[nodiscard]] bool areNext(std::ptrdiff_t i) const
   {
     const auto n = static_cast<std::size_t>(i);
-    return dot_[n] > 0.0F && squared_cross_[n] < gap * gap * dot_[n] * dot_[n];
+    return dot_[n] > 0.0F && squared_cross_[n] < limits_.gap * limits_.gap * dot_[n] * dot_[n];
   }
 
   /// Takes a neighbour in, or ends the run on its side.
@@ -141,7 +147,8 @@ private:
     const float squared_length = chord.squaredNorm();
     if (last - first == 1) {
       const Eigen::Vector3f middle = at(kAside);
-      return chord.cross(middle).squaredNorm() > kBehind * kBehind * squared_length * middle.squaredNorm();
+      return chord.cross(middle).squaredNorm() >
+             limits_.behind * limits_.behind * squared_length * middle.squaredNorm();
     }
     float before = 0.0F;
     for (std::ptrdiff_t i = first + 1; i < last; ++i) {
@@ -158,6 +165,7 @@ private:
   }
 
   const std::array<float, Neighborhood::kPlaces>&x_, &y_, &z_;
+  const RunLimits& limits_;
   Column squared_step_{};  // from each place to the next
   Column squared_cross_{};
   Column dot_{};
@@ -275,8 +283,8 @@ void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points
   ScanNeighbors neighbors(returns);
   for (ScanPoint& point : points) {
     if (neighbors.knows(point)) {
-      Eigen::Vector3f::Map(point.run.data()) = StraightRun(neighbors.along(point), kGap).vector();
-      Eigen::Vector3f::Map(point.run_across.data()) = StraightRun(neighbors.across(point), kGapAcross).vector();
+      Eigen::Vector3f::Map(point.run.data()) = StraightRun(neighbors.along(point), kAlong).vector();
+      Eigen::Vector3f::Map(point.run_across.data()) = StraightRun(neighbors.across(point), kAcross).vector();
     }
   }
 }

@@ -43,6 +43,35 @@ std::vector<ScanPoint> lineOf(const std::function<double(double)>& range)
   return points;
 }
 
+/// Three scan lines, 2 degrees apart, over +-20 steps about the x axis, with so much of each lost: of what a function
+/// of azimuth and ring says is how far away.
+std::vector<ScanPoint> threeLinesOf(const std::function<double(double, int)>& range, int lost = 0)
+{
+  constexpr double kApart = 2.0 * kPi / 180.0;
+  std::vector<Return> returns;
+  for (int ring = 0; ring < 3; ++ring) {
+    for (int i = -20 + lost * ring; i <= 20; ++i) {
+      const double r = range(i * kStep, ring);
+      const double up = (ring - 1) * kApart;
+      returns.push_back(
+          {{r * std::cos(up) * std::cos(i * kStep), r * std::cos(up) * std::sin(i * kStep), r * std::sin(up)},
+           ring,
+           i + 20,
+           (i + 20) / 41.0});
+    }
+  }
+  const auto cloud = toCloud(returns);
+  const CloudView view = viewOf(cloud);
+  ScanLines lines;
+  findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
+  const ScanTiming timing = findScanTiming(view, lines);
+  const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
+  std::vector<ScanPoint> points;
+  collectPoints(all, points);
+  findStraightRuns(all, points);
+  return points;
+}
+
 Eigen::Vector3d runAt(const std::vector<ScanPoint>& points, std::size_t i)
 {
   return Eigen::Vector3f::Map(points.at(i).run.data()).cast<double>();
@@ -125,6 +154,35 @@ TEST(StraightRuns, OfPointsThatAreNotTheScansStayAsTheyAre)
   EXPECT_GT(runAt(points, 0).norm(), 0.1);
   for (std::size_t i = 1; i < points.size(); ++i) {
     EXPECT_EQ(runAt(points, i).norm(), 0.0) << i;
+  }
+}
+
+/// Whatever the other lines have lost.
+TEST(StraightRuns, GoUpAWallAcrossTheScanLines)
+{
+  for (const int lost : {0, 5}) {
+    for (const ScanPoint& point : threeLinesOf(
+             [](double azimuth, int ring) { return 5.0 / (std::cos(azimuth) * std::cos((ring - 1) * kPi / 90.0)); },
+             lost)) {
+      const Eigen::Vector3f up = Eigen::Vector3f::Map(point.run_across.data());
+      const float step = 5.0F * static_cast<float>(std::tan(kPi / 90.0) / std::cos(std::atan2(point.y, point.x)));
+      const bool has_others_near = point.y > 5.0 * std::tan((-20 + 2 * lost) * kStep) - 0.01;
+      if (has_others_near) {
+        EXPECT_NEAR(up.norm(), (point.laser == 1 ? 3.0F : 2.0F) * step, 0.1F * step) << lost << ' ' << point.laser;
+        EXPECT_GT(std::abs(up.z()), 0.99F * up.norm());
+      }
+    }
+  }
+}
+
+/// A bar that one line alone hits, before a wall.
+TEST(StraightRuns, DoNotGoUpFromABarToTheWallBehind)
+{
+  for (const ScanPoint& point :
+       threeLinesOf([](double azimuth, int ring) { return (ring == 1 ? 5.0 : 8.0) / std::cos(azimuth); })) {
+    if (point.laser == 1) {
+      EXPECT_EQ(Eigen::Vector3f::Map(point.run_across.data()).norm(), 0.0F) << point.y;
+    }
   }
 }
 
