@@ -1,4 +1,4 @@
-#include <pcl_floam/filters/core/scan_points.h>
+#include "filters/scan_neighbors.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -13,9 +13,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// Neighbours to each side: where returns lie so close that six steps are less than they are off, a run does not
-/// matter.
-constexpr std::ptrdiff_t kAside = 3;
 /// A return of a straight run is off by up to so much, m: five standard deviations.
 constexpr float kStraight = 0.1F;
 /// Steps of one surface do not differ by more than this factor from one return to the next few.
@@ -33,24 +30,6 @@ struct RunLimits {
 constexpr RunLimits kAlong = {0.02F, 0.05F};
 /// Scan lines are farther from each other, and so are things behind one another seen more from the side.
 constexpr RunLimits kAcross = {0.1F, 0.2F};
-
-/// Neighbours of a return, in the order in which they lie, and itself in the middle.
-struct Neighborhood {
-  static constexpr std::ptrdiff_t kPlaces = 2 * kAside + 1;
-
-  std::array<float, kPlaces> x, y, z;  // beyond its ends anything finite stands, which is not used
-  std::ptrdiff_t first = kAside;
-  std::ptrdiff_t last = kAside;
-
-  void put(std::ptrdiff_t i, const CloudView& cloud, std::int32_t index)
-  {
-    const auto n = static_cast<std::size_t>(i);
-    const auto k = static_cast<std::size_t>(index);
-    x[n] = cloud.x(k);
-    y[n] = cloud.y(k);
-    z[n] = cloud.z(k);
-  }
-};
 
 /// Some of a return's neighbours are on a straight run with it. Lengths are compared by their squares.
 class StraightRun {
@@ -173,107 +152,6 @@ private:
   std::ptrdiff_t high_;
   std::ptrdiff_t first_ = kAside;
   std::ptrdiff_t last_ = kAside;
-};
-
-/// Of a scan, the neighbours of its returns.
-class ScanNeighbors {
-public:
-  explicit ScanNeighbors(const ScanReturns& returns) : cloud_(returns.cloud), lines_(returns.lines) {}
-
-  /// Whether the scan lines have a point where it says.
-  [[nodiscard]] bool knows(const ScanPoint& point) const
-  {
-    if (!lines_.valid() || point.laser >= lines_.lines()) {
-      return false;
-    }
-    const bool is_there = lines_.begin[point.laser] <= point.place && point.place < lines_.begin[point.laser + 1];
-    return is_there && indexAt(point.place) == point.index;
-  }
-
-  [[nodiscard]] Neighborhood along(const ScanPoint& point) const
-  {
-    Neighborhood neighbors;
-    neighbors.first = kAside - std::min<std::ptrdiff_t>(kAside, point.place - lines_.begin[point.laser]);
-    neighbors.last = kAside + std::min<std::ptrdiff_t>(kAside, lines_.begin[point.laser + 1] - 1 - point.place);
-    for (std::ptrdiff_t i = 0; i < Neighborhood::kPlaces; ++i) {
-      neighbors.put(i, cloud_, indexAt(point.place + std::clamp(i, neighbors.first, neighbors.last) - kAside));
-    }
-    return neighbors;
-  }
-
-  /// On the next scan lines, in nearly the same direction. Fastest for points that follow each other.
-  [[nodiscard]] Neighborhood across(const ScanPoint& point)
-  {
-    Neighborhood neighbors;
-    for (std::ptrdiff_t i = 0; i < Neighborhood::kPlaces; ++i) {
-      neighbors.put(i, cloud_, point.index);
-    }
-    if (point.laser > 0 && areAny(point.laser - 1)) {
-      neighbors.put(--neighbors.first, cloud_, indexAt(towards(point, point.laser - 1, below_)));
-    }
-    if (point.laser + 1 < lines_.lines() && areAny(point.laser + 1)) {
-      neighbors.put(++neighbors.last, cloud_, indexAt(towards(point, point.laser + 1, above_)));
-    }
-    return neighbors;
-  }
-
-private:
-  [[nodiscard]] std::int32_t indexAt(std::ptrdiff_t place) const
-  {
-    return lines_.index[static_cast<std::size_t>(place)];
-  }
-  [[nodiscard]] bool areAny(std::uint32_t line) const { return lines_.begin[line] < lines_.begin[line + 1]; }
-
-  /// Cosine of the angle between two rays, but for the length of \p ray.
-  [[nodiscard]] float nearness(const Eigen::Vector3f& ray, std::ptrdiff_t place) const
-  {
-    const auto k = static_cast<std::size_t>(indexAt(place));
-    const Eigen::Vector3f other(cloud_.x(k), cloud_.y(k), cloud_.z(k));
-    return ray.dot(other) / std::sqrt(std::max(other.squaredNorm(), kNoRange));
-  }
-
-  /// What was found last: how much farther on another line the same direction is than on a point's own.
-  struct Lead {
-    std::uint32_t of = 0xFFFFFFFFU;  // a line
-    std::ptrdiff_t ahead = 0;
-  };
-
-  /// The place on another line: from where the last one leads, to where it is no nearer.
-  [[nodiscard]] std::ptrdiff_t towards(const ScanPoint& point, std::uint32_t line, Lead& lead) const
-  {
-    const std::ptrdiff_t begin = lines_.begin[line];
-    const std::ptrdiff_t last = lines_.begin[line + 1] - 1;
-    if (lead.of != point.laser) {  // as if both lines lacked nothing
-      const std::ptrdiff_t own = lines_.begin[point.laser];
-      lead.of = point.laser;
-      lead.ahead =
-          begin + (point.place - own) * (last + 1 - begin) / (lines_.begin[point.laser + 1] - own) - point.place;
-    }
-    const Eigen::Vector3f ray(point.x, point.y, point.z);
-    std::ptrdiff_t place = std::clamp(point.place + lead.ahead, begin, last);
-    float nearest = nearness(ray, place);
-    for (const std::ptrdiff_t step : {1, -1}) {
-      for (int steps = 0; steps < kMostSteps && begin <= place + step && place + step <= last; ++steps) {
-        const float next = nearness(ray, place + step);
-        if (!(next > nearest)) {
-          break;
-        }
-        nearest = next;
-        place += step;
-      }
-    }
-    lead.ahead = place - point.place;
-    return place;
-  }
-
-  static constexpr float kNoRange = 1e-12F;  ///< m^2
-  /// As many returns as a line may have lost: a tenth of a turn of most lidars.
-  static constexpr int kMostSteps = 200;
-
-  const CloudView& cloud_;
-  const ScanLines& lines_;
-  Lead below_;
-  Lead above_;
 };
 
 }  // namespace

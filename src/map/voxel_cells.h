@@ -28,6 +28,7 @@ public:
     std::uint32_t parent = 0;  ///< 0: none, it is a block of the greatest side
     std::uint16_t count = 0;   ///< of its points, as far as it goes
     mutable std::atomic<std::uint8_t> state{kStale};
+    mutable std::atomic<std::uint8_t> around{0};  ///< of a `point`: the parent's count when it was fitted, its low bits
     mutable CellShape shape;
 
     Cell() = default;
@@ -40,6 +41,7 @@ public:
       count = other.count;
       shape = other.shape;
       state.store(other.state.load());
+      around.store(other.around.load());
       return *this;
     }
   };

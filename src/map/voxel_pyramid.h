@@ -80,6 +80,8 @@ private:
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
   bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
+  [[nodiscard]] bool isOfNow(const VoxelCells::Cell& cell, std::uint8_t state) const;
+  [[nodiscard]] std::uint8_t versionAround(const VoxelCells::Cell& cell) const;
   Fit fitOf(Found found, CellFit& own) const;
   void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
   void surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const;

@@ -51,6 +51,19 @@ Eigen::Vector3f VoxelPyramid::centerOf(const Place& place, int level) const
   return (sideOf(level) * cells - Eigen::Vector3d::Constant(0.5 * sideOf(kLevels - 1))).cast<float>();
 }
 
+/// What is neither plane nor line is fitted again when the cell around it has taken points in: whether a fit is of now.
+bool VoxelPyramid::isOfNow(const VoxelCells::Cell& cell, std::uint8_t state) const
+{
+  constexpr auto kPoint = static_cast<std::uint8_t>(VoxelCells::kKnown + static_cast<std::uint8_t>(SurfaceKind::point));
+  return state >= VoxelCells::kKnown &&
+         (state != kPoint || cell.around.load(std::memory_order_acquire) == versionAround(cell));
+}
+
+std::uint8_t VoxelPyramid::versionAround(const VoxelCells::Cell& cell) const
+{
+  return static_cast<std::uint8_t>(cell.parent != 0 ? cells_[cell.parent].count : 0);
+}
+
 /// A thread that finds a fit in the making works it out for itself rather than wait.
 /// \param own room for it then
 VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
@@ -58,14 +71,17 @@ VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
   const VoxelCells::Cell& cell = cells_[found.cell];
   const VoxelCells::Content& content = cells_.content(found.cell);
   std::uint8_t state = cell.state.load(std::memory_order_acquire);
-  if (state >= VoxelCells::kKnown) {
+  if (isOfNow(cell, state)) {
     return {static_cast<SurfaceKind>(state - VoxelCells::kKnown), cell.shape, content.along};
   }
   const CellSums* around = cell.parent != 0 ? &cells_.content(cell.parent).sums : nullptr;
   own = pcl_floam::fitOf(content.sums, sideOf(found.level), around);
-  if (state == VoxelCells::kStale && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
-    cell.shape = own.shape;
-    content.along = own.along;
+  if (state != VoxelCells::kBeingMade && cell.state.compare_exchange_strong(state, VoxelCells::kBeingMade)) {
+    if (!isOfNow(cell, state)) {  // else another thread has made it meanwhile
+      cell.shape = own.shape;
+      content.along = own.along;
+      cell.around.store(versionAround(cell), std::memory_order_release);
+    }
     cell.state.store(static_cast<std::uint8_t>(VoxelCells::kKnown + static_cast<std::uint8_t>(own.kind)),
                      std::memory_order_release);
   }

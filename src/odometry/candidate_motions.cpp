@@ -93,21 +93,26 @@ void CandidateMotions::enqueue()
     }
     enqueued_.push_back(motion);
     for (std::size_t direction = 0; direction < directions_.size(); ++direction) {
-      if (std::find(given_up_.begin(), given_up_.end(), directions_[direction].direction) == given_up_.end()) {
+      if (!isGivenUp(directions_[direction].direction)) {
         waiting_.push_back({motion, direction});
       }
     }
   }
 }
 
-void CandidateMotions::giveUpDirection(double direction)
+void CandidateMotions::giveUpDirections(const std::vector<double>& directions)
 {
-  const auto isGivenUp = [&](const Candidate& c) { return directions_[c.direction].direction == direction; };
-  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isGivenUp), waiting_.end());
-  given_up_.push_back(direction);
-  if (late_ && late_->direction() == direction) {
+  given_up_.insert(given_up_.end(), directions.begin(), directions.end());
+  const auto isCandidateGivenUp = [&](const Candidate& c) { return isGivenUp(directions_[c.direction].direction); };
+  waiting_.erase(std::remove_if(waiting_.begin(), waiting_.end(), isCandidateGivenUp), waiting_.end());
+  if (late_ && isGivenUp(late_->direction())) {
     late_.reset();
   }
+}
+
+bool CandidateMotions::isGivenUp(double direction) const
+{
+  return std::find(given_up_.begin(), given_up_.end(), direction) != given_up_.end();
 }
 
 SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)

@@ -32,7 +32,7 @@ public:
   void goOn(WorkShare& share, const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
   /// None in which time runs like that.
-  void giveUpDirection(double direction);
+  void giveUpDirections(const std::vector<double>& directions);
 
   /// Whether some are known that are not tried yet.
   [[nodiscard]] bool areWaiting() const { return late_ || !waiting_.empty(); }
@@ -46,6 +46,7 @@ private:
   };
 
   void enqueue();
+  [[nodiscard]] bool isGivenUp(double direction) const;
   bool look(WorkShare& share);
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);

@@ -24,7 +24,7 @@ public:
 
   /// Whether nothing is left to look at.
   [[nodiscard]] bool isDone() const { return left() == 0; }
-  /// So many looks.
+  /// Looks that are left.
   [[nodiscard]] std::size_t left() const { return looks_.size() - looked_; }
   /// Looks at the next few, at most those that are left.
   void goOn(std::size_t looks);

@@ -150,19 +150,21 @@ std::vector<double> Hypotheses::giveUpDirections(double behind)
 {
   const double best = std::min_element(all_.begin(), all_.end(), isLikelier)->evidence();  // the first of that order
   std::vector<double> given_up;
-  for (const Hypothesis& one : all_) {
-    const auto keepsUp = [&](const Hypothesis& other) {
-      return other.direction() == one.direction() && !(other.evidence() < best - behind);
-    };
-    if (std::none_of(all_.begin(), all_.end(), keepsUp)) {
-      given_up.push_back(one.direction());
+  const auto isBehind = [&](const Hypothesis& hypothesis) {
+    const bool is_behind = hypothesis.evidence() < best - behind;
+    if (is_behind) {
+      given_up.push_back(hypothesis.direction());
     }
-  }
-  const auto isGivenUp = [&](const Hypothesis& one) {
-    return std::find(given_up.begin(), given_up.end(), one.direction()) != given_up.end();
+    return is_behind;
   };
-  all_.erase(std::remove_if(all_.begin(), all_.end(), isGivenUp), all_.end());
+  all_.erase(std::remove_if(all_.begin(), all_.end(), isBehind), all_.end());
   return given_up;
+}
+
+bool Hypotheses::differInDirectionAlone() const
+{
+  return std::all_of(all_.begin(), all_.end(),
+                     [&](const Hypothesis& one) { return !one.is_lost && haveBegunAlike(one, front()); });
 }
 
 void Hypotheses::giveUpMotions()

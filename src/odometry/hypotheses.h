@@ -45,7 +45,8 @@ private:
 
 /// A direction of time whose evidence is so much less than the best one's is given up, once it is settled how the
 /// sensor began to move: of the sweeps that it remembers, in which nothing else differs. Nor do maps but for keyframes
-/// among the first sweeps, unless these were not found once more, or more came than are kept.
+/// among the first sweeps, unless these were not found once more, or more came than are kept. Before that it takes
+/// twice as much, since each map has taken in keyframes of its own.
 constexpr double kWrongDirection = 15.0;
 
 /// Which is the best one.
@@ -76,10 +77,13 @@ public:
   /// have come to move as a likelier one does, and all but a few of each direction. The likeliest becomes the first.
   void giveUpMotions();
 
-  /// Directions of time of which all match no more, or have fallen behind the best one by so much evidence. The first
-  /// one stays that until then: what is less is noise, by which poses would go back and forth.
-  /// \return those that were given up
+  /// Those that match no more, or have fallen behind the best one by so much evidence. The first one stays that until
+  /// then: what is less is noise, by which poses would go back and forth.
+  /// \return the directions of those that were given up
   std::vector<double> giveUpDirections(double behind);
+
+  /// Whether all have begun with one motion.
+  [[nodiscard]] bool differInDirectionAlone() const;
 
   /// Whether a late one surely explains sweeps worse up to the one that it took last, or is no other than one that is
   /// about as likely.

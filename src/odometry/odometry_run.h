@@ -100,7 +100,7 @@ struct OdometryRun {
   }
 
   /// A sensor that stands still is where its poses are in the mean. Those since it came to rest are corrected as soon
-  /// as it is known that it did, but for the first scan's, which is given, unless that is corrected as well.
+  /// as it is known that it did, but for the first scan's, which is given.
   void noteRest()
   {
     if (report.state != TrackingState::tracked && report.state != TrackingState::initialized) {
@@ -123,10 +123,12 @@ struct OdometryRun {
     }
     report.world_T_sensor = rest.pose();
     if (!was_known) {
-      const bool keeps_first = rests_since_first && static_cast<int>(corrected.size()) + 1 < rest.poses();
-      const auto before = static_cast<std::size_t>(rest.poses() - (keeps_first ? 2 : 1));
+      const auto before = static_cast<std::size_t>(rest.poses() - (rests_since_first ? 2 : 1));
       corrected.resize(std::max(before, corrected.size()));
       std::fill_n(corrected.rbegin(), before, rest.pose());
+      if (rests_since_first && corrected.size() > before) {
+        corrected.front() = initial_pose;
+      }
     }
   }
 

@@ -27,7 +27,7 @@ SurfaceRegistration Start::findMotion(const Sweep& second, const TrackSettings& 
   } else {
     constexpr int kOfTheFirst = 8;  // registrations with which that was found
     if (settings.start_effort > kOfTheFirst) {
-      WorkShare share(settings.start_effort - kOfTheFirst);
+      WorkShare share(settings.start_effort - kOfTheFirst, 1);
       candidates_->goOn(share, kept_, hypotheses);
     }
     found = hypotheses.front().last;
@@ -40,33 +40,33 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
   if (!hypotheses.step(sweep, isDecided() ? Rivals::directions : Rivals::motions, true)) {
     return false;
   }
+  WorkShare share(hypotheses.front().track.settings().start_effort, hypotheses.size());
   if (keeps_) {
     kept_.push_back(sweep);
   }
   was_hinted_ = was_hinted_ || sweep.hint.has_value();
   if (isDecided()) {
-    revise(hypotheses);
+    revise(share, hypotheses);
   } else {
-    follow(hypotheses);
+    follow(share, hypotheses);
   }
   return true;
 }
 
-WorkShare Start::shareBeside(const Hypotheses& hypotheses)
-{
-  const double others = static_cast<double>(hypotheses.size()) - 1.0;
-  return WorkShare(hypotheses.front().track.settings().start_effort - WorkShare::kFollow * others);
-}
-
 /// After many sweeps rivals are still followed, but motions that have not been tried by then are not.
-void Start::follow(Hypotheses& hypotheses)
+void Start::follow(WorkShare& share, Hypotheses& hypotheses)
 {
   hypotheses.giveUpMotions();
-  giveUpDirections(hypotheses);
+  const bool can_be_compared = hypotheses.front().poses.size() > kRememberedSweeps && !leavesNoTrace(hypotheses);
+  if (can_be_compared && hypotheses.differInDirectionAlone()) {
+    const std::vector<double> given_up = hypotheses.giveUpDirections(2.0 * kWrongDirection);
+    if (candidates_) {
+      candidates_->giveUpDirections(given_up);
+    }
+  }
   if (kept_.size() == kMostKept) {
     candidates_.reset();
   } else if (candidates_) {
-    WorkShare share = shareBeside(hypotheses);
     candidates_->goOn(share, kept_, hypotheses);
   }
   if (leavesNoTrace(hypotheses)) {
@@ -77,21 +77,6 @@ void Start::follow(Hypotheses& hypotheses)
   } else if (kept_.size() == kMostKept) {
     keeps_ = false;
     kept_.resize(kRevised);
-  }
-}
-
-/// What surely lost against another way of time need not be gone through once more. Maps differ by their keyframes,
-/// too.
-void Start::giveUpDirections(Hypotheses& hypotheses)
-{
-  constexpr double kSurely = 2.0 * kWrongDirection;
-  if (hypotheses.front().poses.size() <= kRememberedSweeps) {
-    return;
-  }
-  for (const double direction : hypotheses.giveUpDirections(kSurely)) {
-    if (candidates_) {
-      candidates_->giveUpDirection(direction);
-    }
   }
 }
 
@@ -127,7 +112,7 @@ void Start::beginRevision(Hypotheses& hypotheses)
   keyframes_ = keyframesAmong(hypotheses.front().poses, hypotheses.front().track.settings());
 }
 
-void Start::revise(Hypotheses& hypotheses)
+void Start::revise(WorkShare& share, Hypotheses& hypotheses)
 {
   hypotheses.dropLost();
   keyframes_.push_back(hypotheses.tookIn());
@@ -136,7 +121,6 @@ void Start::revise(Hypotheses& hypotheses)
     return std::none_of(all.begin(), all.end(), [&](const Hypothesis& h) { return h.number == revision.number; });
   };
   revisions_.erase(std::remove_if(revisions_.begin(), revisions_.end(), isLost), revisions_.end());
-  WorkShare share = shareBeside(hypotheses);
   while (goOn(share, all)) {
   }
   if (std::all_of(revisions_.begin(), revisions_.end(), [this](const Revision& r) { return isDone(r.pass); })) {
@@ -144,13 +128,21 @@ void Start::revise(Hypotheses& hypotheses)
   }
 }
 
-/// Where the first sweeps were not found, or were too many to be kept, the map stays as it is.
-bool Start::isDone(const BackwardPass& pass) const
+/// All maps or none, since they must differ in nothing but what is judged by them: where some pass has not found the
+/// first sweeps, or they were too many to be kept, the maps stay as they are.
+bool Start::takesMaps() const
 {
-  return pass.isDone() && (!pass.hasFound() || !keeps_ || pass.inMap() == kept_.size());
+  return keeps_ && std::none_of(revisions_.begin(), revisions_.end(), [](const Revision& revision) {
+           return revision.pass.isDone() && !revision.pass.hasFound();
+         });
 }
 
-/// The pass that has least behind it goes on.
+bool Start::isDone(const BackwardPass& pass) const
+{
+  return pass.isDone() && (!takesMaps() || pass.inMap() == kept_.size());
+}
+
+/// The first pass that is not done goes on, and when all are, the one whose map has taken in least.
 /// \return whether the share allows it, and one is left
 bool Start::goOn(WorkShare& share, const std::vector<Hypothesis>& all)
 {
@@ -173,12 +165,10 @@ bool Start::goOn(WorkShare& share, const std::vector<Hypothesis>& all)
   return true;
 }
 
-/// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made: all
-/// or none, since maps must differ in nothing but what is judged by them.
+/// The first sweeps go where the last ones say they were, and the tracks go on with the maps that these have made.
 void Start::settle(Hypotheses& hypotheses)
 {
-  const bool take_maps = keeps_ && std::all_of(revisions_.begin(), revisions_.end(),
-                                               [](const Revision& revision) { return revision.pass.hasFound(); });
+  const bool take_maps = takesMaps();
   for (Hypothesis& hypothesis : hypotheses.all()) {
     BackwardPass& pass = std::find_if(revisions_.begin(), revisions_.end(), [&](const Revision& r) {
                            return r.number == hypothesis.number;

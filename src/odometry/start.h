@@ -4,6 +4,7 @@
 
 #include "odometry/backward_pass.h"
 #include "odometry/candidate_motions.h"
+#include "odometry/work_share.h"
 
 #include <cstddef>
 #include <memory>
@@ -44,14 +45,12 @@ private:
 
   [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
-  void follow(Hypotheses& hypotheses);
-  void giveUpDirections(Hypotheses& hypotheses);
+  void follow(WorkShare& share, Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);
-  void revise(Hypotheses& hypotheses);
+  void revise(WorkShare& share, Hypotheses& hypotheses);
   [[nodiscard]] bool isDone(const BackwardPass& pass) const;
+  [[nodiscard]] bool takesMaps() const;
   bool goOn(WorkShare& share, const std::vector<Hypothesis>& all);
-  /// Of the last sweep, beside those who take it.
-  [[nodiscard]] static WorkShare shareBeside(const Hypotheses& hypotheses);
   void settle(Hypotheses& hypotheses);
 
   std::shared_ptr<SpareMaps> spare_maps_ = std::make_shared<SpareMaps>();

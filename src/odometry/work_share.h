@@ -2,10 +2,13 @@
 /// How much of what a start has to do one sweep bears.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+
 namespace pcl_floam {
 
-/// Work that one sweep bears beside its own registration, counted in registrations of a track that is followed.
-/// Counted, not timed, so that results do not depend on the machine.
+/// Work that one sweep bears beside its own registration, counted in usual registrations: counted, not timed, so that
+/// results do not depend on the machine.
 class WorkShare {
 public:
   // What a part of a start costs, with the evidence that rivals are compared by and the maps that are made for it.
@@ -16,10 +19,17 @@ public:
   static constexpr double kBack = 2.0;      ///< a sweep is found once more
   static constexpr double kTurnBack = 5.0;  ///< a map is made of the last sweeps, and its shapes when it is asked
   static constexpr double kInsert = 0.5;    ///< a map takes in a sweep
+  /// With less, sweeps would come as fast as a late track takes them.
+  static constexpr double kLeast = 2.0 * kCatchUp;
 
-  explicit WorkShare(double registrations) : left_(registrations) {}
+  /// \param registrations that a sweep may bear
+  /// \param followed      tracks that took it, one of which is its own
+  WorkShare(double registrations, std::size_t followed)
+      : left_(std::max(kLeast, registrations - kFollow * (static_cast<double>(followed) - 1.0)))
+  {
+  }
 
-  /// Whether a part of the work that costs so much is done with this sweep; the first always, so that all is some day.
+  /// Whether a part of the work that costs so much is done with this sweep; the first always, however much it is.
   [[nodiscard]] bool take(double cost)
   {
     if (cost > left_ && has_begun_) {

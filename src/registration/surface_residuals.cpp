@@ -129,7 +129,7 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   };
   const Eigen::Vector3d one = acrossLine(p.measured->run);
   const Eigen::Vector3d next = acrossLine(p.measured->run_across);
-  const Eigen::Vector3d run = one.squaredNorm() < next.squaredNorm() ? next : one;
+  const Eigen::Vector3d run = one.squaredNorm() < next.squaredNorm() ? next : one;  // the other is along the line
   const double squared_run = run.squaredNorm();
   const bool has_run = squared_run > kNoExtent;
   const Eigen::Vector3d other = has_run ? line.direction.cross(run).normalized() : line.direction.unitOrthogonal();
@@ -158,18 +158,16 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
 {
   const double variance = varianceFrom(near);
   const Eigen::Vector3d off = p.place - near.center;
-  Eigen::Vector3d seen = off;
-  Eigen::Matrix3d observed = near.observability;
+  Eigen::Matrix3d kept = Eigen::Matrix3d::Identity();  // of a displacement
   for (const std::array<float, 3>* measured : {&p.measured->run, &p.measured->run_across}) {
     const Eigen::Vector3d run = turned(*measured);
     const double squared_run = run.squaredNorm();
-    if (squared_run > kNoExtent) {  // S seen and S observed S with S = 1 - (1 - k) run run^T / |run|^2
-      const double unseen = (1.0 - observedAlongRun(squared_run, variance)) / squared_run;
-      const Eigen::Vector3d along = unseen * (observed * run);
-      observed -= along * run.transpose() + run * along.transpose() - unseen * along.dot(run) * run * run.transpose();
-      seen -= unseen * run.dot(seen) * run;
+    if (squared_run > kNoExtent) {
+      kept -= (1.0 - observedAlongRun(squared_run, variance)) / squared_run * (kept * run) * run.transpose();
     }
   }
+  const Eigen::Vector3d seen = kept * off;
+  const Eigen::Matrix3d observed = kept.transpose() * near.observability * kept;
   const double length = seen.norm();
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
   const double w = weight(length * length, variance, derivativeAlong(direction, p), p, sums);

@@ -117,6 +117,7 @@ TEST(VoxelPyramid, WhatFillsItsCellEvenlyTellsNothingOfTheWayAlong)
 /// How many rings a cell happens to hold is no sign of where a surface ends.
 TEST(VoxelPyramid, ACornerThatRingsCrossTellsNothingOfTheWayUp)
 {
+  int corners = 0;
   for (double step = 0.4 * kSide; step < 0.9 * kSide; step += 0.05 * kSide) {
     VoxelPyramid map(kSide);
     std::mt19937 random(5);
@@ -130,10 +131,36 @@ TEST(VoxelPyramid, ACornerThatRingsCrossTellsNothingOfTheWayUp)
     for (double up = -2.0; up <= 2.0; up += 0.1) {
       const Surface corner = map.surfaceAt({0.15, 0.15, up}, kStranger);
       if (corner.kind == SurfaceKind::point) {
+        ++corners;
         EXPECT_LT(corner.observability(2, 2), 0.2) << "rings " << step << " apart, at " << up;
       }
     }
   }
+  EXPECT_GT(corners, 100);
+}
+
+/// Whoever asked before, and when.
+TEST(VoxelPyramid, WhatIsNeitherPlaneNorLineFollowsWhatComesInBesideIt)
+{
+  VoxelPyramid asked(kSide);
+  VoxelPyramid never(kSide);
+  std::mt19937 random(7);
+  const auto insert = [&](double x, double y, std::uint32_t laser) {
+    const Eigen::Vector3d place(x, y, 0.25 + test::uniform(random, 0.2));
+    asked.insert(place, laser);
+    never.insert(place, laser);
+  };
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    insert(0.25 + test::uniform(random, 0.1), 0.25 + test::uniform(random, 0.2), i);
+  }
+  const Surface before = asked.surfaceAt({0.2, 0.3, 0.27}, kStranger);
+  ASSERT_EQ(before.kind, SurfaceKind::point);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    insert(0.75 + test::uniform(random, 0.24), 0.5 + test::uniform(random, 0.49), i);
+  }
+  const Surface after = asked.surfaceAt({0.2, 0.3, 0.27}, kStranger);
+  EXPECT_NE(after.observability, before.observability);
+  EXPECT_EQ(after.observability, never.surfaceAt({0.2, 0.3, 0.27}, kStranger).observability);
 }
 
 TEST(VoxelPyramid, LooksAtAWiderScaleWhereTheFinestShowsOneLaser)

@@ -23,7 +23,8 @@ struct Surface {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();     ///< m, world frame: mean of its points; for `point` the nearest
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit: the plane's normal or the line's direction
   /// Of a `point`: which displacements show there, 0 to 1 by direction; some of that is chance, and counted as
-  /// such. What fills its cell evenly goes on beyond it, and tells nothing of the way along it.
+  /// such. What fills its cell, or the one around that, evenly goes on beyond it, and tells nothing of the way along
+  /// it; nor does what lies in a cell of the greatest side.
   Eigen::Matrix3d observability = Eigen::Matrix3d::Identity();
   double thickness = 0.0;   ///< m^2: variance of its points across it; for `point` the squared spacing of the points
   double extent = 0.0;      ///< m^2: variance of its points along it, in the shorter direction of a plane

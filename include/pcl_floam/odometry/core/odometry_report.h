@@ -51,7 +51,7 @@ struct OdometryReport {
   /// It is not decided yet how the sensor began to move: other motions than this one are still sought, a few each scan
   /// (`start_effort`), or are or were followed beside it, since the first scans do not tell (fast, among traffic;
   /// without times). The poses since the first scan may yet be corrected, by more than `covariance` tells where a
-  /// motion turns out to be right that was not followed then. By default it ends after some ten scans where one motion
+  /// motion turns out to be right that was not followed then. By default it ends after some fifteen scans where one motion
   /// is likely, else when one is left, and its scans were gone through once more.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
@@ -69,7 +69,7 @@ struct OdometryReport {
   /// How well the scan, and by surfaces a hint of its motion, tell where the sensor is, whatever was expected, and by
   /// surfaces less what noise would tell: one standard deviation along the direction of which they tell least, m; a
   /// kilometre where nothing does, as of a pose that is predicted; 0 for the first scan, whose pose is given.
-  /// `doubtful` until two scans in a row together tell to 1.2 cm, and again from one on that tells to no more than 5
+  /// `doubtful` until two scans in a row together tell to 2 cm, and again from one on that tells to no more than 5
   /// cm, after a gap of ten periods, and where a pose was set.
   double scan_only_deviation = 0.0;
   /// Of `world_T_sensor`; order, axes and units are those of the registration's, which is of the middle of the sweep:
