@@ -51,8 +51,8 @@ struct OdometryReport {
   /// It is not decided yet how the sensor began to move: other motions than this one are still sought, a few each scan
   /// (`start_effort`), or are or were followed beside it, since the first scans do not tell (fast, among traffic;
   /// without times). The poses since the first scan may yet be corrected, by more than `covariance` tells where a
-  /// motion turns out to be right that was not followed then. By default it ends after some fifteen scans where one motion
-  /// is likely, else when one is left, and its scans were gone through once more.
+  /// motion turns out to be right that was not followed then. By default it ends after some fifteen scans where one
+  /// motion is likely, else when one is left, and its scans were gone through once more.
   bool provisional = false;
   /// What `world_T_sensor` should have been for so many scans before this one, oldest first, where the first ones are
   /// known better by now, have turned out to be wrong (then `reason` says so), or were unknown because the second scan
