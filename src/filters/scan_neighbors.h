@@ -17,6 +17,8 @@ namespace pcl_floam {
 /// Neighbours to each side: where returns lie so close that six steps are less than they are off, a run does not
 /// matter.
 constexpr std::ptrdiff_t kAside = 3;
+/// Neighbours on a scan line have no greater angle between them, rad: 1.2 degrees, three steps of a coarse head.
+constexpr float kNextTo = 0.02F;
 
 /// Neighbours of a return, in the order in which they lie, and itself in the middle.
 struct Neighborhood {
@@ -100,7 +102,7 @@ private:
                              std::ptrdiff_t last) const
   {
     const Eigen::Vector3f along = rayAt(std::min(place + 1, last)) - rayAt(std::max(place - 1, begin));
-    return !(std::abs(along.dot(ray.normalized() - rayAt(place))) <= kBeside * along.norm());
+    return !(std::abs(along.dot(ray.normalized() - rayAt(place))) <= kNextTo * along.norm());
   }
 
   /// What was found last: how much farther on another line the same direction is than on a point's own.
@@ -142,7 +144,6 @@ private:
 
   static constexpr std::ptrdiff_t kNone = -1;
   static constexpr float kNoRange = 1e-12F;  ///< m^2
-  static constexpr float kBeside = 0.02F;    ///< rad: 1.2 degrees, three steps of a coarse head
   /// As many returns as a line may have lost: a tenth of a turn of most lidars.
   static constexpr int kMostSteps = 200;
 

@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
 
 namespace pcl_floam {
 
@@ -26,8 +24,7 @@ struct RunLimits {
   /// Two returns that lie behind one another are of two things: the least sine of the angle between step and ray.
   float behind;
 };
-/// 1.2 degrees are three steps of a coarse head.
-constexpr RunLimits kAlong = {0.02F, 0.05F};
+constexpr RunLimits kAlong = {kNextTo, 0.05F};
 /// Scan lines are farther from each other, and so are things behind one another seen more from the side.
 constexpr RunLimits kAcross = {0.1F, 0.2F};
 

@@ -149,15 +149,11 @@ void Hypotheses::updateMaps(const Sweep& sweep)
 std::vector<double> Hypotheses::giveUpDirections(double behind)
 {
   const double best = std::min_element(all_.begin(), all_.end(), isLikelier)->evidence();  // the first of that order
+  const auto keepsUp = [&](const Hypothesis& hypothesis) { return !(hypothesis.evidence() < best - behind); };
+  const auto left = std::stable_partition(all_.begin(), all_.end(), keepsUp);
   std::vector<double> given_up;
-  const auto isBehind = [&](const Hypothesis& hypothesis) {
-    const bool is_behind = hypothesis.evidence() < best - behind;
-    if (is_behind) {
-      given_up.push_back(hypothesis.direction());
-    }
-    return is_behind;
-  };
-  all_.erase(std::remove_if(all_.begin(), all_.end(), isBehind), all_.end());
+  std::for_each(left, all_.end(), [&](const Hypothesis& hypothesis) { given_up.push_back(hypothesis.direction()); });
+  all_.erase(left, all_.end());
   return given_up;
 }
 

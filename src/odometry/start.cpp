@@ -57,6 +57,7 @@ bool Start::step(const Sweep& sweep, Hypotheses& hypotheses)
 void Start::follow(WorkShare& share, Hypotheses& hypotheses)
 {
   hypotheses.giveUpMotions();
+  // What evidence remembers is then of these sweeps, not of how a track began.
   const bool can_be_compared = hypotheses.front().poses.size() > kRememberedSweeps && !leavesNoTrace(hypotheses);
   if (can_be_compared && hypotheses.differInDirectionAlone()) {
     const std::vector<double> given_up = hypotheses.giveUpDirections(2.0 * kWrongDirection);

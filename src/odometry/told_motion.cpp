@@ -12,9 +12,9 @@ namespace pcl_floam {
 
 namespace {
 
-/// What two scans together have to tell of the position, one standard deviation in m: as much as a single return would,
-/// since the errors that all of a laser's returns share can look like more than nothing about a motion that is wrong.
-/// After a scan that leaves a direction open, the next one may seem to tell of it by chance.
+/// What two scans together have to tell of the position, one standard deviation in m: as much as a single return would.
+/// Less may be what errors that all of a laser's returns share make of a motion that is wrong; and after a scan that
+/// leaves a direction open, the next one may seem to tell of it by chance.
 constexpr double kTold = 0.02;
 /// One alone, for what was told before to last: half a metre in the ten scans of a second.
 constexpr double kOpen = 0.05;

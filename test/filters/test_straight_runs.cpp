@@ -15,6 +15,21 @@ namespace {
 constexpr double kStep = 0.2 * kPi / 180.0;
 constexpr double kNothing = 0.0;  // m: no return
 
+/// With their runs.
+std::vector<ScanPoint> pointsOf(const std::vector<Return>& returns)
+{
+  const auto cloud = toCloud(returns);
+  const CloudView view = viewOf(cloud);
+  ScanLines lines;
+  findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
+  const ScanTiming timing = findScanTiming(view, lines);
+  const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
+  std::vector<ScanPoint> points;
+  collectPoints(all, points);
+  findStraightRuns(all, points);
+  return points;
+}
+
 /// The lower of two scan lines over +-20 steps about the x axis, of what a function of the azimuth says is how far
 /// away.
 std::vector<ScanPoint> lineOf(const std::function<double(double)>& range)
@@ -31,16 +46,7 @@ std::vector<ScanPoint> lineOf(const std::function<double(double)>& range)
           {{r * std::cos(azimuth), r * std::sin(azimuth), 0.1 * r * ring}, ring, i + 20, (i + 20) / 41.0});
     }
   }
-  const auto cloud = toCloud(returns);
-  const CloudView view = viewOf(cloud);
-  ScanLines lines;
-  findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
-  const ScanTiming timing = findScanTiming(view, lines);
-  const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
-  std::vector<ScanPoint> points;
-  collectPoints(all, points);
-  findStraightRuns(all, points);
-  return points;
+  return pointsOf(returns);
 }
 
 /// Three scan lines, 2 degrees apart, over +-20 steps about the x axis, with so much of each lost: of what a function
@@ -60,16 +66,7 @@ std::vector<ScanPoint> threeLinesOf(const std::function<double(double, int)>& ra
            (i + 20) / 41.0});
     }
   }
-  const auto cloud = toCloud(returns);
-  const CloudView view = viewOf(cloud);
-  ScanLines lines;
-  findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
-  const ScanTiming timing = findScanTiming(view, lines);
-  const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
-  std::vector<ScanPoint> points;
-  collectPoints(all, points);
-  findStraightRuns(all, points);
-  return points;
+  return pointsOf(returns);
 }
 
 Eigen::Vector3d runAt(const std::vector<ScanPoint>& points, std::size_t i)

@@ -37,8 +37,8 @@ struct OdometryParameters {
   /// Work of a start, by surfaces, that one scan bears beside its own, in registrations of a scan: other motions are
   /// followed, sought and tried, and the first scans are gone through once more from the last ones. What is more is
   /// left to the scans that follow, whose poses are provisional until then. 2 to 1000; counted, not timed, so that the
-  /// result does not depend on the machine. Default 10: few scans take more than some times as long as another. Where
-  /// nothing has to keep pace, 1000 seeks all with the second scan.
+  /// result does not depend on the machine. Default 10: with less, poses stay provisional for longer; with more, scans
+  /// of the start take longer. Where nothing has to keep pace, 1000 seeks all with the second scan.
   int start_effort = 10;
 };
 
