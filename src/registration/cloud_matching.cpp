@@ -16,6 +16,10 @@ namespace {
 constexpr double kGateSpacings = 3.0;
 constexpr double kGateMedians = 3.0;
 
+/// A point is beside a surface up to so many spacings from it, and on it up to so many across it.
+constexpr double kBesideSpacings = 10.0;
+constexpr double kOnSpacings = 0.5;
+
 }  // namespace
 
 CloudMatching::CloudMatching(const CloudLevel& source, const CloudLevel& target, const CloudRegistrationRun& run,
@@ -132,6 +136,24 @@ void CloudMatching::narrow()
       match_[i] = -1;
     }
   }
+}
+
+double CloudMatching::agreementAt(const SE3& pose)
+{
+  gate_ = std::min(run_.max_distance, kBesideSpacings * spacing_);
+  searchNearest(pose);
+  std::ptrdiff_t agreeing = 0;
+#pragma omp parallel for num_threads(run_.threads) schedule(static) reduction(+ : agreeing)
+  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (match_[i] >= 0) {
+      const bool is_on = residual(pose, i).squared < kOnSpacings * kOnSpacings * spacing_ * spacing_;
+      const bool is_at =
+          static_cast<double>(squared_distance_[i]) < kGateSpacings * kGateSpacings * spacing_ * spacing_;
+      agreeing += is_on ? (is_at ? 1 : 0) : -1;
+    }
+  }
+  return static_cast<double>(agreeing) / static_cast<double>(match_.size());
 }
 
 /// Whether all matches lie on each other but for rounding. Then there is nothing to reject, and rejectors that compare

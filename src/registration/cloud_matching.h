@@ -43,6 +43,10 @@ public:
     return sum(pose);
   }
 
+  /// Part of the source's points that lie on the target's surfaces at a pose, less that of those that lie near these
+  /// but beside them. What goes on where these end, or is far from any, speaks neither for a pose nor against it.
+  [[nodiscard]] double agreementAt(const SE3& pose);
+
   [[nodiscard]] const std::vector<PointMatch>& matches() const { return matches_; }
   [[nodiscard]] double spacing() const { return spacing_; }
 

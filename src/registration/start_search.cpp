@@ -22,6 +22,9 @@ constexpr double kCoarseEpsilon = 2e-2;
 /// How far off the pose may be on a level where surfaces are drawn to surfaces, in its voxels.
 constexpr double kWidth = 0.5;
 
+/// What is near the guess, in the finest level's voxels.
+constexpr double kNear = 3.0;
+
 /// The source in the voxels of the target's levels.
 std::vector<CloudLevel> thinnedAlike(const CloudPyramid& source, const CloudPyramid& target, int threads)
 {
@@ -36,13 +39,11 @@ std::vector<CloudLevel> thinnedAlike(const CloudPyramid& source, const CloudPyra
   return sources;
 }
 
-/// What the typical match of surfaces costs at a pose. Of the full clouds, for thinned ones look alike in many places.
-double costAt(const SE3& pose, const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run,
-              const CloudAlignment& alignment)
+/// How much more of the full clouds a pose has explained than contradicted; thinned ones look alike in many places.
+double agreementAt(const SE3& pose, const CloudPyramid& source, const CloudPyramid& target,
+                   const CloudRegistrationRun& run)
 {
-  CloudMatching level(source.full(), target.full(), run, false, kAlongSurfaces);
-  const NormalEquations sums = level.evaluate(pose, [&](const SE3& p) { return alignment.toFrames(p); });
-  return sums.count() >= run.min_correspondences ? sums.cost / sums.count() : std::numeric_limits<double>::infinity();
+  return CloudMatching(source.full(), target.full(), run, false, kAlongSurfaces).agreementAt(pose);
 }
 
 }  // namespace
@@ -58,23 +59,35 @@ void findStart(const CloudPyramid& source, const CloudPyramid& target, const Clo
       alignment.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
     }
   };
+  const auto drawTo = [&](std::size_t i) {
+    align(CloudMatching(sources[i], targets[i], run, false, kAlongSurfaces, kWidth * targets[i].voxel));
+  };
   const auto drawSurfaces = [&] {
     for (std::size_t i = sources.size(); i-- > 0;) {
-      align(CloudMatching(sources[i], targets[i], run, false, kAlongSurfaces, kWidth * targets[i].voxel));
+      drawTo(i);
     }
   };
   SE3 best = guess;
-  double least = costAt(guess, source, target, run, alignment);
+  double most = agreementAt(guess, source, target, run);
   const auto propose = [&] {
-    const double cost = costAt(alignment.pose(), source, target, run, alignment);
-    if (cost < least) {
+    const double agreement = agreementAt(alignment.pose(), source, target, run);
+    if (agreement > most) {
       best = alignment.pose();
-      least = cost;
+      most = agreement;
     }
+    alignment.setPose(guess);
   };
+  if (!sources.empty()) {
+    CloudRegistrationRun near = run;
+    near.max_distance = std::min(run.max_distance, kNear * targets.front().voxel);
+    CloudMatching level(sources.front(), targets.front(), near, false, kAlongSurfaces, kWidth * targets.front().voxel);
+    if (2.0 * level.spacing() <= run.max_distance) {
+      alignment.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
+    }
+    propose();
+  }
   drawSurfaces();
   propose();
-  alignment.setPose(guess);
   for (std::size_t i = sources.size(); i-- > 0;) {
     align(CloudMatching(sources[i], targets[i], run, false, 1.0));
   }
