@@ -138,22 +138,27 @@ void CloudMatching::narrow()
   }
 }
 
-double CloudMatching::agreementAt(const SE3& pose)
+/// Some of the points tell as much as all.
+double CloudMatching::agreementAt(const SE3& pose) const
 {
-  gate_ = std::min(run_.max_distance, kBesideSpacings * spacing_);
-  searchNearest(pose);
+  constexpr std::size_t kEnough = 2000;
+  const double beside = std::min(run_.max_distance, kBesideSpacings * spacing_);
+  const double at = kGateSpacings * spacing_;
+  const double on = kOnSpacings * spacing_;
+  const std::size_t stride = std::max<std::size_t>(1, match_.size() / kEnough);
+  const auto count = static_cast<std::ptrdiff_t>(match_.size() / stride);
   std::ptrdiff_t agreeing = 0;
 #pragma omp parallel for num_threads(run_.threads) schedule(static) reduction(+ : agreeing)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
-    if (match_[i] >= 0) {
-      const bool is_on = residual(pose, i).squared < kOnSpacings * kOnSpacings * spacing_ * spacing_;
-      const bool is_at =
-          static_cast<double>(squared_distance_[i]) < kGateSpacings * kGateSpacings * spacing_ * spacing_;
-      agreeing += is_on ? (is_at ? 1 : 0) : -1;
+  for (std::ptrdiff_t n = 0; n < count; ++n) {
+    const std::size_t i = static_cast<std::size_t>(n) * stride;
+    auto squared = static_cast<float>(beside * beside);
+    const int found = target_.tree.nearest((pose * source_.tree.points()[i].cast<double>()).cast<float>(), squared);
+    if (found >= 0) {
+      const bool is_on = residual(pose, i, static_cast<std::size_t>(found)).squared < on * on;
+      agreeing += !is_on ? -1 : (squared < at * at ? 1 : 0);
     }
   }
-  return static_cast<double>(agreeing) / static_cast<double>(match_.size());
+  return static_cast<double>(agreeing) / static_cast<double>(std::max<std::ptrdiff_t>(1, count));
 }
 
 /// Whether all matches lie on each other but for rounding. Then there is nothing to reject, and rejectors that compare

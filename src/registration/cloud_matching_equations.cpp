@@ -20,9 +20,9 @@ constexpr double kSmallestScale = 1e-4;  ///< of the kernel, in spacings
 
 }  // namespace
 
-CloudMatching::Residual CloudMatching::residual(const SE3& pose, std::size_t i) const
+/// Of a source point and a target point.
+CloudMatching::Residual CloudMatching::residual(const SE3& pose, std::size_t i, std::size_t j) const
 {
-  const auto j = static_cast<std::size_t>(match_[i]);
   LocalShape turned = source_.shapes[i];
   turned.axis = (pose.rotation * turned.axis.cast<double>()).cast<float>();
   const Eigen::Matrix3d c = target_.shapes[j].covariance(along_) + turned.covariance(along_);
@@ -41,7 +41,7 @@ void CloudMatching::weigh(const SE3& pose)
   for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
     const auto i = static_cast<std::size_t>(n);
     if (match_[i] >= 0) {
-      residuals_[i] = residual(pose, i);
+      residuals_[i] = residual(pose, i, static_cast<std::size_t>(match_[i]));
     } else {
       residuals_[i].squared = -1.0F;
     }

@@ -1,7 +1,6 @@
 #include "registration/start_search.h"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,8 @@ constexpr double kCoarseEpsilon = 2e-2;
 /// How far off the pose may be on a level where surfaces are drawn to surfaces, in its voxels.
 constexpr double kWidth = 0.5;
 
-/// What is near the guess, in the finest level's voxels.
+/// Matches near the guess are no farther apart, in the finest level's voxels: as on the full clouds, where neighbours
+/// of the right match are three spacings away.
 constexpr double kNear = 3.0;
 
 /// The source in the voxels of the target's levels.
@@ -39,64 +39,108 @@ std::vector<CloudLevel> thinnedAlike(const CloudPyramid& source, const CloudPyra
   return sources;
 }
 
-/// How much more of the full clouds a pose has explained than contradicted; thinned ones look alike in many places.
-double agreementAt(const SE3& pose, const CloudPyramid& source, const CloudPyramid& target,
-                   const CloudRegistrationRun& run)
-{
-  return CloudMatching(source.full(), target.full(), run, false, kAlongSurfaces).agreementAt(pose);
-}
+/// Poses that thinned clouds lead to, of which the full ones agree best with the one that stays.
+class StartSearch {
+public:
+  StartSearch(const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run,
+              CloudAlignment& alignment)
+      : source_(source),
+        target_(target),
+        run_(run),
+        near_(run),
+        alignment_(alignment),
+        targets_(target.thinnedLevels()),
+        sources_(thinnedAlike(source, target, run.threads)),
+        guess_(alignment.pose()),
+        best_(guess_),
+        most_(agreement())
+  {
+  }
+
+  /// Clouds that share half of what they show are drawn away from a good guess by all the rest.
+  void lookNear()
+  {
+    if (!sources_.empty()) {
+      near_.max_distance = std::min(run_.max_distance, kNear * targets_.front().voxel);
+      drawSurfaces(0, near_);
+      propose();
+    }
+  }
+
+  void drawSurfaces()
+  {
+    for (std::size_t i = sources_.size(); i-- > 0;) {
+      drawSurfaces(i, run_);
+    }
+  }
+
+  void drawPoints()
+  {
+    for (std::size_t i = sources_.size(); i-- > 0;) {
+      align(CloudMatching(sources_[i], targets_[i], run_, false, 1.0));
+    }
+    if (std::max(source_.full().tree.size(), target_.full().tree.size()) <= kMostPoints) {
+      align(CloudMatching(source_.full(), target_.full(), run_, false, 1.0));
+    }
+  }
+
+  /// The next ones begin at the guess again.
+  void propose()
+  {
+    const double agreement = this->agreement();
+    if (agreement > most_) {
+      best_ = alignment_.pose();
+      most_ = agreement;
+    }
+    alignment_.setPose(guess_);
+  }
+
+  [[nodiscard]] const SE3& best() const { return best_; }
+
+private:
+  void drawSurfaces(std::size_t i, const CloudRegistrationRun& run)
+  {
+    align(CloudMatching(sources_[i], targets_[i], run, false, kAlongSurfaces, kWidth * targets_[i].voxel));
+  }
+
+  void align(CloudMatching level)
+  {
+    if (2.0 * level.spacing() <= run_.max_distance) {  // else its points' neighbours are farther than matches may be
+      alignment_.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
+    }
+  }
+
+  /// Of the full clouds, for thinned ones look alike in many places.
+  [[nodiscard]] double agreement() const
+  {
+    return CloudMatching(source_.full(), target_.full(), run_, false, kAlongSurfaces).agreementAt(alignment_.pose());
+  }
+
+  const CloudPyramid& source_;
+  const CloudPyramid& target_;
+  const CloudRegistrationRun& run_;
+  CloudRegistrationRun near_;
+  CloudAlignment& alignment_;
+  const std::vector<CloudLevel>& targets_;
+  std::vector<CloudLevel> sources_;
+  SE3 guess_;
+  SE3 best_;
+  double most_;
+};
 
 }  // namespace
 
 void findStart(const CloudPyramid& source, const CloudPyramid& target, const CloudRegistrationRun& run,
                CloudAlignment& alignment)
 {
-  const SE3 guess = alignment.pose();
-  const std::vector<CloudLevel>& targets = target.thinnedLevels();
-  const std::vector<CloudLevel> sources = thinnedAlike(source, target, run.threads);
-  const auto align = [&](CloudMatching level) {
-    if (2.0 * level.spacing() <= run.max_distance) {  // else its points' neighbours are farther than matches may be
-      alignment.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
-    }
-  };
-  const auto drawTo = [&](std::size_t i) {
-    align(CloudMatching(sources[i], targets[i], run, false, kAlongSurfaces, kWidth * targets[i].voxel));
-  };
-  const auto drawSurfaces = [&] {
-    for (std::size_t i = sources.size(); i-- > 0;) {
-      drawTo(i);
-    }
-  };
-  SE3 best = guess;
-  double most = agreementAt(guess, source, target, run);
-  const auto propose = [&] {
-    const double agreement = agreementAt(alignment.pose(), source, target, run);
-    if (agreement > most) {
-      best = alignment.pose();
-      most = agreement;
-    }
-    alignment.setPose(guess);
-  };
-  if (!sources.empty()) {
-    CloudRegistrationRun near = run;
-    near.max_distance = std::min(run.max_distance, kNear * targets.front().voxel);
-    CloudMatching level(sources.front(), targets.front(), near, false, kAlongSurfaces, kWidth * targets.front().voxel);
-    if (2.0 * level.spacing() <= run.max_distance) {
-      alignment.align(level, kCoarseIterations, kCoarseEpsilon * level.spacing(), false);
-    }
-    propose();
-  }
-  drawSurfaces();
-  propose();
-  for (std::size_t i = sources.size(); i-- > 0;) {
-    align(CloudMatching(sources[i], targets[i], run, false, 1.0));
-  }
-  if (std::max(source.full().tree.size(), target.full().tree.size()) <= kMostPoints) {
-    align(CloudMatching(source.full(), target.full(), run, false, 1.0));
-  }
-  drawSurfaces();
-  propose();
-  alignment.setPose(best);
+  StartSearch search(source, target, run, alignment);
+  search.lookNear();
+  search.drawSurfaces();
+  search.propose();
+  search.drawPoints();
+  search.drawSurfaces();
+  search.propose();
+  alignment.setPose(search.best());
 }
 
 }  // namespace pcl_floam
