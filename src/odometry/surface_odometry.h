@@ -200,7 +200,7 @@ struct SurfaceOdometry : OdometryRun {
     const SweepPose world_T_sweep = world_T_track * tracker.track().pose();
     sideBySide(
         parameters.threads, [&] { tracker.updateMap(sweep); },
-        [&] { report.keyframe = map_building.add(cloud, scan, world_T_sweep, parameters); });
+        [&] { report.keyframe = tracker.isBorneOut() && map_building.add(cloud, scan, world_T_sweep, parameters); });
     report.milliseconds.map += watch.lap();
   }
 

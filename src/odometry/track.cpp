@@ -44,6 +44,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 {
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
+  is_borne_out_ = false;
   keyframe_ = guess;
   settle(sweep, guess, kGiven);
   SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
@@ -188,7 +189,9 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
+  is_borne_out_ = is_borne_out_ || registration.explained() >= kBorneOut;
+  is_keyframe_ =
+      sweeps_to_wait_ == 0 && keeps_map_ && is_borne_out_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }
 

@@ -64,6 +64,10 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
+  /// Whether the map that it began in has ever explained a sweep. Until then nothing enters it: what came in at a wrong
+  /// pose would bear that out.
+  [[nodiscard]] bool isBorneOut() const { return is_borne_out_; }
+
   /// Whether the last sweep is one that the map should take in.
   [[nodiscard]] bool isKeyframe() const { return is_keyframe_; }
   /// The map takes in the last sweep, if that is a keyframe.
@@ -102,7 +106,8 @@ private:
   std::optional<TrackMap> map_;
   mutable SurfaceRoom room_;
   bool keeps_map_ = true;
-  int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
+  bool is_borne_out_ = true;  ///< by a map that was made before, if there is one
+  int sweeps_to_wait_ = 0;    ///< until the map takes in sweeps again
   bool is_keyframe_ = false;
   MotionEstimate motion_;
   Vector6 velocity_before_ = Vector6::Zero();

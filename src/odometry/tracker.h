@@ -55,6 +55,8 @@ public:
   {
     return may_correct_ && (hypotheses_.size() > 1 || (start_ && (start_->isSearching() || hypotheses_.wereSeveral())));
   }
+  /// \ref Track::isBorneOut of the track.
+  [[nodiscard]] bool isBorneOut() const { return track().isBorneOut(); }
   [[nodiscard]] const Track& track() const { return hypotheses_.front().track; }
   /// What its pose may be off, as another of the tracks may be the right one.
   [[nodiscard]] Matrix6 rivalCovariance() const { return hypotheses_.rivalCovariance(); }

@@ -66,6 +66,29 @@ TEST(OdometryIsTold, APoseThatMostOfTheScanDoesNotBearOutIsDoubtful)
   }
 }
 
+/// What a scan brought into the map at a wrong pose would bear out the next ones.
+TEST(OdometryIsTold, AMapOfAnotherRoomIsLeftAlone)
+{
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
+  Odometry<PointXYZIRT> mapping(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    mapping.track(sweep(steadyPath, k));
+  }
+  Room other;
+  other.walls = {{-40.0, -28.0, -1.2}, {45.0, 30.0, 9.0}};
+  other.furniture = {{{6.0, 8.0, -1.2}, {12.0, 9.0, 4.0}}, {{-14.0, -9.0, -1.2}, {-11.0, 3.0, 5.0}}};
+  Odometry<PointXYZIRT> odometry(defaults());
+  odometry.localizeIn(mapping.map(), SE3(), MapUse::kept_current);
+  for (int k = 0; k < kScans; ++k) {
+    const auto there = [&](double fraction) { return steadyPath(k + fraction); };
+    const OdometryReport& report = odometry.track(toCloud(sweepRoom(other, Lidar(), there)));
+    EXPECT_NE(report.state, TrackingState::tracked) << "scan " << k << ' ' << report.explained;
+  }
+  EXPECT_EQ(odometry.map().size(FeatureKind::plane), mapping.map().size(FeatureKind::plane));
+}
+
 TEST(OdometryIsTold, AMapToLocalizeInMustHoldSomething)
 {
   Odometry<PointXYZIRT> odometry(defaults());
