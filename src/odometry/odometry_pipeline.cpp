@@ -1,5 +1,6 @@
 #include "common/parameter_check.h"
 #include "odometry/feature_odometry.h"
+#include "odometry/scan_repetition.h"
 #include "odometry/sensor_frame.h"
 #include "odometry/surface_odometry.h"
 
@@ -81,7 +82,14 @@ struct OdometryPipeline::Impl {
 
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
-    visit([&](auto& odometry) { odometry.track(frame.ofSensor(scan), stamp); });
+    if (repetition.isLastAgain(scan, stamp)) {
+      visit([&](auto& odometry) {
+        odometry.beginReport(scan.size);
+        odometry.predictOnly("the scan is the last one again");
+      });
+    } else {
+      visit([&](auto& odometry) { odometry.track(frame.ofSensor(scan), stamp); });
+    }
     return noteReport();
   }
 
@@ -92,6 +100,7 @@ struct OdometryPipeline::Impl {
   }
 
   SensorFrame frame;
+  ScanRepetition repetition;
 
 private:
   const OdometryReport& noteReport()

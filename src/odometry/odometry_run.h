@@ -46,13 +46,18 @@ struct OdometryRun {
   OdometryReport report;
   Stopwatch watch;
 
-  void beginScan(std::size_t points, std::optional<double> stamp)
+  void beginReport(std::size_t points)
   {
-    scan_stamp = stamp;
     report = OdometryReport();
     report.points = points;
     report.since_stamp = since_stamp;
     watch.start();
+  }
+
+  void beginScan(std::size_t points, std::optional<double> stamp)
+  {
+    beginReport(points);
+    scan_stamp = stamp;
     hint.elapse();
     periods += clock.tick(stamp);
     periods_error = std::hypot(periods_error, clock.error());

@@ -138,6 +138,28 @@ TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
   }
 }
 
+/// With its stamp; as if it had not come.
+TEST(OdometryDisturbed, AScanThatComesTwiceTellsNothingMore)
+{
+  Odometry<PointXYZIRT> once(defaults());
+  Odometry<PointXYZIRT> twice(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    const double stamp = 100.0 + 0.1 * k;
+    const Cloud scan = sweep(acceleratedPath, k);
+    const OdometryReport& expected = once.track(scan, stamp);
+    const OdometryReport report = twice.track(scan, stamp);
+    EXPECT_EQ(report.state, expected.state) << "scan " << k << ' ' << report.reason;
+    EXPECT_TRUE(sameBits(report.world_T_sensor, expected.world_T_sensor)) << "scan " << k;
+    EXPECT_EQ(report.covariance, expected.covariance) << "scan " << k;
+    if (k % 3 != 1) {
+      const OdometryReport& again = twice.track(scan, stamp);
+      EXPECT_EQ(again.state, TrackingState::predicted) << "scan " << k;
+      EXPECT_LT((again.world_T_sensor.translation - expected.world_T_sensor.translation).norm(), 0.01) << "scan " << k;
+      EXPECT_FALSE(again.keyframe);
+    }
+  }
+}
+
 TEST(OdometryDisturbed, StartsWithTheFirstUsableScan)
 {
   Odometry<PointXYZIRT> odometry(defaults());

@@ -1,0 +1,55 @@
+/// \file scan_repetition.h
+/// Scans that come twice, as drivers and recordings that stumble give them.
+#pragma once
+
+#include <pcl_floam/common/core/cloud_view.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+
+namespace pcl_floam {
+
+/// The scan before, as far as it takes to know it again.
+class ScanRepetition {
+public:
+  /// Whether a scan is the one before: of its stamp and size, and some points the same bit for bit. Noise does not draw
+  /// them twice; without a stamp, a sensor of no noise might.
+  bool isLastAgain(const CloudView& scan, std::optional<double> stamp)
+  {
+    const std::uint64_t points = hashOfSome(scan);
+    const bool is_again = stamp && scan.size > 0 && stamp == stamp_ && scan.size == size_ && points == points_;
+    stamp_ = stamp;
+    size_ = scan.size;
+    points_ = points;
+    return is_again;
+  }
+
+private:
+  /// FNV-1a.
+  static std::uint64_t hashOfSome(const CloudView& scan)
+  {
+    constexpr std::size_t kSome = 256;
+    constexpr std::uint64_t kPrime = 0x100000001B3U;
+    std::uint64_t hash = 0xCBF29CE484222325U;
+    const std::size_t stride = std::max<std::size_t>(1, scan.size / kSome);
+    for (std::size_t i = 0; i < scan.size; i += stride) {
+      const std::array<float, 3> place = {scan.x(i), scan.y(i), scan.z(i)};
+      std::array<std::uint32_t, 3> bits;
+      std::memcpy(bits.data(), place.data(), sizeof(bits));
+      for (const std::uint32_t word : bits) {
+        hash = (hash ^ word) * kPrime;
+      }
+    }
+    return hash;
+  }
+
+  std::optional<double> stamp_;
+  std::size_t size_ = 0;
+  std::uint64_t points_ = 0;
+};
+
+}  // namespace pcl_floam
