@@ -44,12 +44,11 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 {
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
-  is_borne_out_ = false;
   keyframe_ = guess;
   settle(sweep, guess, kGiven);
   SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
   if (found.report.hasConverged()) {
-    update(sweep, found);
+    update(sweep, found, Rivals::none);
     updateMap(sweep);
   }
   return found;
@@ -66,7 +65,7 @@ SurfaceRegistration Track::step(const Sweep& sweep, Rivals rivals)
     if (rivals != Rivals::none) {
       judge(registration);
     }
-    update(sweep, registration);
+    update(sweep, registration, rivals);
   } else {
     motion_ = before;
     sweeps_to_wait_ = waited_before;
@@ -179,7 +178,7 @@ void Track::judge(const SurfaceRegistration& registration)
 }
 
 /// Distortion Compensation Update (Eq. 12).
-void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
+void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, Rivals rivals)
 {
   const SE3 last = pose_.middle;
   motion_.update(registration.report.target_T_source, registration.velocity, registration.posterior);
@@ -189,7 +188,7 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration)
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  is_borne_out_ = is_borne_out_ || registration.explained() >= kBorneOut;
+  is_borne_out_ = rivals == Rivals::motions || registration.explained() >= kBorneOut;
   is_keyframe_ =
       sweeps_to_wait_ == 0 && keeps_map_ && is_borne_out_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);

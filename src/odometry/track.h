@@ -64,8 +64,8 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
-  /// Whether the map that it began in has ever explained a sweep. Until then nothing enters it: what came in at a wrong
-  /// pose would bear that out.
+  /// Whether the map explains the last sweep, once it is decided how the sensor began to move. Else the sweep does not
+  /// enter it: what came in at a wrong pose would bear that out.
   [[nodiscard]] bool isBorneOut() const { return is_borne_out_; }
 
   /// Whether the last sweep is one that the map should take in.
@@ -100,14 +100,14 @@ private:
   void settle(const Sweep& sweep, const SE3& guess, const Doubt& doubt);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
   void judge(const SurfaceRegistration& registration);
-  void update(const Sweep& sweep, const SurfaceRegistration& registration);
+  void update(const Sweep& sweep, const SurfaceRegistration& registration, Rivals rivals);
 
   TrackSettings settings_;
   std::optional<TrackMap> map_;
   mutable SurfaceRoom room_;
   bool keeps_map_ = true;
-  bool is_borne_out_ = true;  ///< by a map that was made before, if there is one
-  int sweeps_to_wait_ = 0;    ///< until the map takes in sweeps again
+  bool is_borne_out_ = true;
+  int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   bool is_keyframe_ = false;
   MotionEstimate motion_;
   Vector6 velocity_before_ = Vector6::Zero();

@@ -75,7 +75,7 @@ SurfaceRegistration Track::begin(const Sweep& first, const Sweep& second, const 
     beginMap();
     map_->insert(first, {SE3(), fractionOf(first) / second.periods * log(found.report.target_T_source)});
     motion_.learnNothing();  // it was supposed, not predicted
-    update(second, found);
+    update(second, found, Rivals::motions);
     updateMap(second);
   }
   return found;

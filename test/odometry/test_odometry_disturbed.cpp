@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <random>
@@ -135,6 +136,33 @@ TEST(OdometryDisturbed, StampsMayStandStillOrBeMissing)
     const Cloud scan = sweep(acceleratedPath, k);
     EXPECT_NE(odometry.track(scan, stamp).state, TrackingState::predicted);
     EXPECT_LT(error(odometry.getPose(), acceleratedPath, k), 0.05) << "scan " << k;
+  }
+}
+
+/// As by a hand or a sack, while it is carried on: what covers it must not become the world.
+TEST(OdometryDisturbed, ACoveredSensorIsNotTrackedWrongly)
+{
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
+  constexpr int kLong = 40;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 0.01);  // m
+  for (const double nearness : {0.6, 1.0}) {
+    Odometry<PointXYZIRT> odometry(defaults());
+    for (int k = 0; k < kLong; ++k) {
+      Cloud scan = sweep(steadyPath, k);
+      const bool is_covered = k >= 15 && k < 27;
+      for (PointXYZIRT& point : scan) {
+        const double azimuth = std::atan2(static_cast<double>(point.y), static_cast<double>(point.x));
+        const double range = point.getVector3fMap().cast<double>().norm();
+        const double cover = nearness + 0.1 * std::sin(2.0 * azimuth) + 0.05 * std::sin(5.0 * azimuth + 1.0);
+        point.getVector3fMap() *= static_cast<float>(((is_covered ? cover : range) + noise(random)) / range);
+      }
+      const OdometryReport& report = odometry.track(scan);
+      EXPECT_TRUE(report.state != TrackingState::tracked || error(report.world_T_sensor, steadyPath, k) < 0.3)
+          << "scan " << k;
+    }
   }
 }
 
