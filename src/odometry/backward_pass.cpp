@@ -71,7 +71,7 @@ void BackwardPass::findNext(const std::vector<Sweep>& kept)
     left_ = 0;
     return;
   }
-  back_.updateMap(sweep);
+  back_.updateMap(sweep, back_.isFar());  // its poses are near ones that are trusted
   found_[left_] = back_.pose();
 }
 

@@ -31,6 +31,14 @@ void FirstScans::miss()
   }
 }
 
+void FirstScans::repeat()
+{
+  if (open_ && !given_.empty()) {
+    at_.push_back(Place(at_.back()));
+    given_.push_back(SE3(given_.back()));
+  }
+}
+
 void FirstScans::give(const SE3& world_T_sensor)
 {
   if (open_) {

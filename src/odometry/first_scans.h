@@ -25,6 +25,8 @@ public:
   /// The scan was registered.
   void add(const FeatureSet& features);
   void miss();
+  /// The last one came once more.
+  void repeat();
   void give(const SE3& world_T_sensor);
 
   /// What all scans before this one should have been given; nothing if that is what they were given, to 1 mm.

@@ -83,10 +83,7 @@ struct OdometryPipeline::Impl {
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp)
   {
     if (repetition.isLastAgain(scan, stamp)) {
-      visit([&](auto& odometry) {
-        odometry.beginReport(scan.size);
-        odometry.predictOnly("the scan is the last one again");
-      });
+      of().repeatScan();
     } else {
       visit([&](auto& odometry) { odometry.track(frame.ofSensor(scan), stamp); });
     }
@@ -153,6 +150,7 @@ void OdometryPipeline::setPose(const SE3& world_T_sensor)
   if (!world_T_sensor.isFinite()) {
     throw std::invalid_argument("the pose that is set is not finite");
   }
+  impl_->repetition = ScanRepetition();  // the last scan again is then one at that pose
   impl_->visit([&](auto& odometry) { odometry.setPose(impl_->frame.ofSensor(world_T_sensor)); });
 }
 

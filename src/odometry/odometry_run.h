@@ -7,6 +7,7 @@
 #include "motion/pending_hint.h"
 #include "motion/rest.h"
 #include "motion/scan_clock.h"
+#include "odometry/first_scans.h"
 #include "odometry/map_building.h"
 #include "odometry/scan_preparation.h"
 #include "odometry/stopwatch.h"
@@ -32,7 +33,8 @@ struct OdometryRun {
   OdometryComponents components;
   MapBuilding map_building;
   ScanClock clock;
-  SE3 initial_pose;  ///< of the first scan, at the instant of the parameters
+  FirstScans first_scans;  ///< of the engine 'surfaces': until it is decided how the sensor moved
+  SE3 initial_pose;        ///< of the first scan, at the instant of the parameters
   PreparedScan scan;
   PendingHint hint;
   ToldMotion told_motion;
@@ -46,21 +48,27 @@ struct OdometryRun {
   OdometryReport report;
   Stopwatch watch;
 
-  void beginReport(std::size_t points)
+  void beginScan(std::size_t points, std::optional<double> stamp)
   {
+    scan_stamp = stamp;
     report = OdometryReport();
     report.points = points;
     report.since_stamp = since_stamp;
     watch.start();
-  }
-
-  void beginScan(std::size_t points, std::optional<double> stamp)
-  {
-    beginReport(points);
-    scan_stamp = stamp;
     hint.elapse();
     periods += clock.tick(stamp);
     periods_error = std::hypot(periods_error, clock.error());
+  }
+
+  /// The last scan came once more: what was told of it still holds.
+  void repeatScan()
+  {
+    hint.elapse();
+    first_scans.repeat();
+    report.keyframe = false;
+    report.corrected_poses.clear();
+    report.milliseconds = {};
+    report.reason = "the scan is the last one again";
   }
 
   /// What was found out about the scan.

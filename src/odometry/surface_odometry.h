@@ -3,7 +3,6 @@
 #pragma once
 
 #include "common/side_by_side.h"
-#include "odometry/first_scans.h"
 #include "odometry/odometry_run.h"
 #include "odometry/reason_to_doubt.h"
 #include "odometry/tracker.h"
@@ -30,7 +29,6 @@ struct SurfaceOdometry : OdometryRun {
   SE3 world_T_track;  ///< the track's origin is near the first scan's mid-sweep
   Sweep sweep;
   bool has_enough_points = false;
-  FirstScans first_scans;  ///< until it is decided how the sensor moved
 
   void track(const CloudView& cloud, std::optional<double> stamp)
   {

@@ -12,6 +12,10 @@ constexpr Doubt kGiven = {3.0, 0.25};
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
 
+/// Sweeps after which a sensor that the map does not explain has gone too far to come back to it by itself: three
+/// seconds of most lidars.
+constexpr int kNoWayBack = 30;
+
 /// Distortion Compensation, first stage (Eq. 3 and 4).
 SweepPlacement placementOf(CompensationMode mode)
 {
@@ -44,6 +48,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 {
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
+  is_in_doubt_ = true;
   keyframe_ = guess;
   settle(sweep, guess, kGiven);
   SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
@@ -188,9 +193,11 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, 
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  is_borne_out_ = rivals == Rivals::motions || registration.explained() >= kBorneOut;
-  is_keyframe_ =
-      sweeps_to_wait_ == 0 && keeps_map_ && is_borne_out_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
+  const bool is_explained = rivals == Rivals::motions || registration.explained() >= kBorneOut;
+  is_in_doubt_ = is_in_doubt_ && !is_explained;
+  unexplained_ = is_explained ? 0 : unexplained_ + 1;
+  is_borne_out_ = is_explained || (!is_in_doubt_ && unexplained_ > kNoWayBack);
+  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }
 

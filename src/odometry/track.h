@@ -64,14 +64,17 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
-  /// Whether the map explains the last sweep, once it is decided how the sensor began to move. Else the sweep does not
-  /// enter it: what came in at a wrong pose would bear that out.
+  /// Whether the last sweep may enter the map, which bears it out: what came in at a wrong pose would bear that out.
+  /// Not asked while it is open how the sensor began to move, nor after so long that there is no way back; but a map
+  /// that was made before has to explain one sweep at least.
   [[nodiscard]] bool isBorneOut() const { return is_borne_out_; }
 
-  /// Whether the last sweep is one that the map should take in.
-  [[nodiscard]] bool isKeyframe() const { return is_keyframe_; }
+  /// Whether the last sweep is far enough from those in the map.
+  [[nodiscard]] bool isFar() const { return is_keyframe_; }
+  /// Whether the map should take it in.
+  [[nodiscard]] bool isKeyframe() const { return is_keyframe_ && is_borne_out_; }
   /// The map takes in the last sweep, if that is a keyframe.
-  void updateMap(const Sweep& sweep) { updateMap(sweep, is_keyframe_); }
+  void updateMap(const Sweep& sweep) { updateMap(sweep, isKeyframe()); }
   /// The map takes in the last sweep, if somebody wants it to.
   void updateMap(const Sweep& sweep, bool takes_it);
 
@@ -107,7 +110,9 @@ private:
   mutable SurfaceRoom room_;
   bool keeps_map_ = true;
   bool is_borne_out_ = true;
-  int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
+  bool is_in_doubt_ = false;  ///< a map that was made before has explained nothing yet
+  int unexplained_ = 0;       ///< sweeps in a row
+  int sweeps_to_wait_ = 0;    ///< until the map takes in sweeps again
   bool is_keyframe_ = false;
   MotionEstimate motion_;
   Vector6 velocity_before_ = Vector6::Zero();

@@ -85,6 +85,12 @@ void CloudMatching::askUsersSearch(const SE3& pose, const SE3& target_T_source)
   for (std::size_t j = 0; j < target_.number.size(); ++j) {
     position[target_.number[j]] = static_cast<int>(j);
   }
+  for (const auto& [again, first] : target_.repeated) {
+    const auto found = position.find(first);
+    if (found != position.end()) {
+      position[again] = int(found->second);
+    }
+  }
   const std::vector<int> nearest = run_.search(source_.number, target_T_source);
   for (std::size_t i = 0; i < match_.size(); ++i) {
     match_[i] = -1;
@@ -138,27 +144,45 @@ void CloudMatching::narrow()
   }
 }
 
-/// Some of the points tell as much as all.
+/// Some of the points tell as much as all. A pose at which nothing is near is the worst.
 double CloudMatching::agreementAt(const SE3& pose) const
 {
   constexpr std::size_t kEnough = 2000;
   const double beside = std::min(run_.max_distance, kBesideSpacings * spacing_);
-  const double at = kGateSpacings * spacing_;
-  const double on = kOnSpacings * spacing_;
   const std::size_t stride = std::max<std::size_t>(1, match_.size() / kEnough);
   const auto count = static_cast<std::ptrdiff_t>(match_.size() / stride);
+  std::ptrdiff_t near = 0;
   std::ptrdiff_t agreeing = 0;
-#pragma omp parallel for num_threads(run_.threads) schedule(static) reduction(+ : agreeing)
+#pragma omp parallel for num_threads(run_.threads) schedule(static) reduction(+ : agreeing, near)
   for (std::ptrdiff_t n = 0; n < count; ++n) {
     const std::size_t i = static_cast<std::size_t>(n) * stride;
     auto squared = static_cast<float>(beside * beside);
     const int found = target_.tree.nearest((pose * source_.tree.points()[i].cast<double>()).cast<float>(), squared);
     if (found >= 0) {
-      const bool is_on = residual(pose, i, static_cast<std::size_t>(found)).squared < on * on;
-      agreeing += !is_on ? -1 : (squared < at * at ? 1 : 0);
+      agreeing += vote(pose, i, static_cast<std::size_t>(found), squared);
+      ++near;
     }
   }
-  return static_cast<double>(agreeing) / static_cast<double>(std::max<std::ptrdiff_t>(1, count));
+  return near < run_.min_correspondences ? -1.0 : static_cast<double>(agreeing) / static_cast<double>(count);
+}
+
+/// 1 for the pose, -1 against it. Only surfaces tell what lies beside them.
+int CloudMatching::vote(const SE3& pose, std::size_t i, std::size_t j, float squared_distance) const
+{
+  constexpr double kParallel = 0.9;  // cosine: 25 degrees
+  const double at = kGateSpacings * spacing_;
+  const double on = kOnSpacings * spacing_;
+  const bool is_at = static_cast<double>(squared_distance) < at * at;
+  const Residual r = residual(pose, i, j);
+  bool is_on = static_cast<double>(r.squared) < on * on;
+  const LocalShape& one = source_.shapes[i];
+  const LocalShape& other = target_.shapes[j];
+  if (one.kind == ShapeKind::plane && other.kind == ShapeKind::plane) {
+    const Eigen::Vector3d normal = other.axis.cast<double>();
+    is_on = std::abs(normal.dot(pose.rotation * one.axis.cast<double>())) > kParallel &&
+            std::abs(normal.dot(r.difference.cast<double>())) < on;
+  }
+  return is_on ? static_cast<int>(is_at) : -1;
 }
 
 /// Whether all matches lie on each other but for rounding. Then there is nothing to reject, and rejectors that compare

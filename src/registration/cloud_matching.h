@@ -44,7 +44,8 @@ public:
   }
 
   /// Part of the source's points that lie on the target's surfaces at a pose, less that of those that lie near these
-  /// but beside them. What goes on where these end, or is far from any, speaks neither for a pose nor against it.
+  /// but beside them, or across. What goes on where these end, or is far from any, speaks neither for a pose nor
+  /// against it.
   [[nodiscard]] double agreementAt(const SE3& pose) const;
 
   [[nodiscard]] const std::vector<PointMatch>& matches() const { return matches_; }
@@ -92,6 +93,7 @@ private:
   void keepListed();
   void weigh(const SE3& pose);
   [[nodiscard]] Residual residual(const SE3& pose, std::size_t i, std::size_t j) const;
+  [[nodiscard]] int vote(const SE3& pose, std::size_t i, std::size_t j, float squared_distance) const;
   [[nodiscard]] NormalEquations sum(const SE3& pose) const;
   void accumulate(const SE3& pose, std::size_t i, ResidualRows& rows, NormalEquations& sums) const;
 

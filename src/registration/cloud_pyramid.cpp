@@ -1,12 +1,10 @@
 #include "registration/cloud_pyramid.h"
 
-#include "common/hash.h"
+#include "registration/repeated_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <utility>
 
@@ -40,33 +38,6 @@ bool isZero(const CloudView& cloud, std::size_t i)
   return cloud.x(i) == 0.0F && cloud.y(i) == 0.0F && cloud.z(i) == 0.0F;
 }
 
-/// Each place once: repeated, as by second returns that are the first again, it would stand for all the others.
-void dropRepeated(const CloudView& cloud, std::vector<int>& numbers)
-{
-  unsigned bits = 1;
-  for (; (std::size_t{1} << bits) < 2 * numbers.size(); ++bits) {
-  }
-  std::vector<int> seen(std::size_t{1} << bits, -1);
-  const auto isRepeated = [&](int number) {
-    const auto n = static_cast<std::size_t>(number);
-    const std::array<float, 3> place = {cloud.x(n), cloud.y(n), cloud.z(n)};
-    std::array<std::uint32_t, 3> key;
-    std::memcpy(key.data(), place.data(), sizeof(key));
-    const std::uint64_t mixed = (std::uint64_t{key[0]} << 32U | key[1]) ^ (std::uint64_t{key[2]} << 16U);
-    for (std::size_t i = hashOf(mixed, 64 - bits);; i = (i + 1) & (seen.size() - 1)) {
-      if (seen[i] < 0) {
-        seen[i] = number;
-        return false;
-      }
-      const auto k = static_cast<std::size_t>(seen[i]);
-      if (cloud.x(k) == place[0] && cloud.y(k) == place[1] && cloud.z(k) == place[2]) {
-        return true;
-      }
-    }
-  };
-  numbers.erase(std::remove_if(numbers.begin(), numbers.end(), isRepeated), numbers.end());
-}
-
 /// The points that take part. One point at the origin may be a model's corner; several stand for "no return".
 std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
 {
@@ -84,7 +55,6 @@ std::vector<int> usablePoints(const CloudView& cloud, const std::vector<std::uin
         std::remove_if(usable.begin(), usable.end(), [&](int i) { return isZero(cloud, static_cast<std::size_t>(i)); }),
         usable.end());
   }
-  dropRepeated(cloud, usable);
   return usable;
 }
 
@@ -245,6 +215,7 @@ CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_
   CloudLevel all = bareLevel(points.position, points.number);
   all.rounding = kFloatRounding * points.largest;
   full_ = withShapes(withoutNoise(withoutScanLines(std::move(all))), threads);
+  full_.repeated = points.repeated;
 }
 
 std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
@@ -276,6 +247,7 @@ CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std:
 {
   Points points;
   points.number = usablePoints(cloud, selectable);
+  points.repeated = dropRepeated(cloud, points.number);
   const auto position = [&](int i) {
     const auto n = static_cast<std::size_t>(i);
     return Eigen::Vector3d(cloud.x(n), cloud.y(n), cloud.z(n));

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -21,12 +22,13 @@ inline constexpr std::size_t kFewPoints = 1000;
 
 /// A cloud at one resolution: its points, or the means of those within each voxel.
 struct CloudLevel {
-  PointTree tree;                  ///< relative to the pyramid's origin
-  std::vector<int> number;         ///< in the tree's order: the cloud's point that is this one, or nearest to the mean
-  std::vector<LocalShape> shapes;  ///< in the tree's order
-  double spacing = 0.0;            ///< typical distance of neighbours, m
-  double rounding = 0.0;           ///< m; of the cloud's coordinates, wherever its frame's origin is
-  double voxel = 0.0;              ///< m; size of the voxels whose means the points are
+  PointTree tree;           ///< relative to the pyramid's origin
+  std::vector<int> number;  ///< in the tree's order: the cloud's point that is this one, or nearest to the mean
+  std::vector<std::pair<int, int>> repeated;  ///< numbers of points that are others again, and of these others
+  std::vector<LocalShape> shapes;             ///< in the tree's order
+  double spacing = 0.0;                       ///< typical distance of neighbours, m
+  double rounding = 0.0;                      ///< m; of the cloud's coordinates, wherever its frame's origin is
+  double voxel = 0.0;                         ///< m; size of the voxels whose means the points are
 };
 
 /// The means of a level's points within voxels of the given size, m.
@@ -61,9 +63,10 @@ public:
 
 private:
   struct Points {
-    std::vector<Eigen::Vector3f> position;  ///< relative to the origin
-    std::vector<int> number;                ///< in the cloud
-    double largest = 0.0;                   ///< m; of the coordinates in the cloud's frame
+    std::vector<Eigen::Vector3f> position;      ///< relative to the origin
+    std::vector<int> number;                    ///< in the cloud
+    std::vector<std::pair<int, int>> repeated;  ///< as \ref CloudLevel has them
+    double largest = 0.0;                       ///< m; of the coordinates in the cloud's frame
   };
 
   explicit CloudPyramid(int threads) : threads_(threads) {}

@@ -1,7 +1,9 @@
-// Clouds of which only a part is in both, or some of whose points come again and again->
+// Clouds of which only a part is in both, or some of whose points come again and again.
 #include "support/registration_clouds.h"
 
 #include <pcl_floam/registration/edge_plane_registration.h>
+
+#include <pcl/search/kdtree.h>
 
 #include <gtest/gtest.h>
 
@@ -100,7 +102,7 @@ TEST(PartsInCommon, AreFoundFromAGoodGuess)
   }
 }
 
-/// A point that is there three thousand times is one place.
+/// A point that is there thirty thousand times is one place.
 TEST(RepeatedPoints, TellNothingMore)
 {
   const Cloud::Ptr source = partOfRoom(5, -kWidth, kWidth, SE3());
@@ -116,6 +118,28 @@ TEST(RepeatedPoints, TellNothingMore)
   const Registration::Ptr again = registered(repeating, target_repeating);
   EXPECT_EQ(again->getFinalTransformation(), once->getFinalTransformation());
   EXPECT_EQ(again->report().covariance, once->report().covariance);
+}
+
+/// As a tree of the user's, which knows them all, may answer.
+TEST(RepeatedPoints, MayBeWhatASearchFinds)
+{
+  const Cloud::Ptr source = partOfRoom(5, -kWidth, kWidth, SE3());
+  const SE3 motion = exp((Vector6() << 0.05, 0.03, 0.0, 0.0, 0.0, 0.04).finished());
+  const Cloud::Ptr target = partOfRoom(6, -kWidth, kWidth, motion);
+  auto twice = pcl::make_shared<Cloud>(*target);
+  *twice += *target;
+  auto tree = pcl::make_shared<pcl::search::KdTree<Point>>();
+  tree->setInputCloud(twice);
+  Registration registration;
+  registration.setSearchMethodTarget(tree, true);
+  registration.setInputSource(source);
+  registration.setInputTarget(twice);
+  Cloud output;
+  registration.align(output);
+  ASSERT_TRUE(registration.hasConverged());
+  const Eigen::Matrix4d without = registered(source, target)->getFinalTransformation();
+  const Eigen::Matrix4f with = registration.getFinalTransformation().cast<float>();
+  EXPECT_LT(disagreement(*source, with, without.cast<float>()), 0.002);
 }
 
 }  // namespace pcl_floam::test

@@ -57,7 +57,7 @@ public:
 ///
 /// Should scans have too few features in common, all their points are tried, too.
 ///
-/// Either starts with thinned clouds, unless fewer than 4 iterations are asked for.
+/// Points that are the same are one. Either starts with thinned clouds, unless fewer than 4 iterations are asked for.
 ///
 /// ICP's settings, read when align() runs, also through a base pointer:
 /// - `setMaximumIterations` (default here 30, on the full clouds): reaching it is a success.

@@ -27,7 +27,8 @@ class CloudPyramid;
 class PreparedCloud {
 public:
   /// \param selectable one flag per point; empty: all take part. Points that are not finite never do, nor do points at
-  ///                   exactly (0, 0, 0) if there are several: they stand for "no return".
+  ///                   exactly (0, 0, 0) if there are several: they stand for "no return". Others that are the same
+  ///                   are one.
   PreparedCloud(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
   /// Only what \ref alignRoughly needs: a few thousand points.
   [[nodiscard]] static PreparedCloud thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
