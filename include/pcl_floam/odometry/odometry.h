@@ -21,7 +21,8 @@ namespace pcl_floam {
 /// What becomes of a map that was made before.
 enum class MapUse : std::uint8_t {
   frozen,       ///< it stays as it is: localisation whose error does not grow
-  kept_current  ///< keyframes that it explains are added; what they see through, or is beyond its horizon, is forgotten
+  kept_current  ///< keyframes are added, by surfaces once it has explained a scan; what they see through, or is beyond
+                ///< its horizon, is forgotten
 };
 
 /// The odometry for scans whose point type is known only at run time (\ref CloudView).
@@ -45,7 +46,8 @@ public:
   /// Takes the next scan. Never throws for data: the report tells what came of it.
   /// \param scan  one sweep in the sensor's frame, or that of \ref setSensorPose
   /// \param stamp seconds, any epoch, of the same instant of every sweep; without it scans are taken to
-  ///              follow each other at a constant period
+  ///              follow each other at a constant period. A scan that comes again with its stamp is not taken twice:
+  ///              the report stays that of the first time, and says so
   const OdometryReport& track(const CloudView& scan, std::optional<double> stamp = std::nullopt);
 
   /// Tells that a scan is missing (unreadable, dropped): the pose moves on by prediction.
@@ -59,7 +61,8 @@ public:
   void setMotionHint(const MotionHint& hint);
 
   /// The sensor is at another place of the map than was thought: the next scan is sought there. Map and parameters
-  /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with. Before
+  /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with, nor, by
+  /// surfaces, do those after them until it explains one, for three seconds at most. Before
   /// the second scan it is the pose of the first. \ref getPose and \ref report tell of it from the next scan on.
   ///
   /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees

@@ -98,7 +98,7 @@ struct CloudRegistrationRun {
                                                 const CloudRegistrationRun& run);
 
 /// Where a registration by other means should start: at what registering thinned clouds comes to, or at the guess if
-/// surfaces are closer there. Takes a few milliseconds.
+/// the clouds agree better there. Takes a few milliseconds.
 [[nodiscard]] SE3 alignRoughly(const PreparedCloud& source, const PreparedCloud& target,
                                const CloudRegistrationRun& run);
 
