@@ -131,7 +131,7 @@ struct SurfaceOdometry : OdometryRun {
     noteTold(outcome.registration.told, was_tracking ? sweep.hint : std::nullopt);  // the first is only sought by it
     reachScan();
     if (may_correct && !map_building.hasPrior()) {
-      first_scans.add(scan.features);
+      first_scans.add(tracker.isBorneOut() ? scan.features : FeatureSet());
     }
     if (outcome.changed_track && !map_building.hasPrior()) {
       placeTrack();
