@@ -12,8 +12,8 @@ constexpr Doubt kGiven = {3.0, 0.25};
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
 
-/// Sweeps after which a sensor that the map does not explain has gone too far to come back to it by itself: three
-/// seconds of most lidars.
+/// Sweeps in a row that the map does not explain, after which the sensor is taken to be elsewhere, and what it sees
+/// there has to come in: longer than it is covered by a hand, or passes from one room into the next.
 constexpr int kNoWayBack = 30;
 
 /// Distortion Compensation, first stage (Eq. 3 and 4).

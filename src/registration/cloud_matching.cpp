@@ -12,8 +12,7 @@ namespace pcl_floam {
 
 namespace {
 
-/// Matches may be this many spacings apart, and this many times the median distance while that is large.
-constexpr double kGateSpacings = 3.0;
+/// Matches may be this many times the median distance apart while that is large.
 constexpr double kGateMedians = 3.0;
 
 /// A point is beside a surface up to so many spacings from it, and on it up to so many across it.

@@ -16,6 +16,9 @@
 
 namespace pcl_floam {
 
+/// Matches of surfaces may be this many spacings apart, and farther while most of them are.
+inline constexpr double kGateSpacings = 3.0;
+
 /// Aligns one level of a source with one of a target. Poses are between the pyramids' origins.
 class CloudMatching {
 public:

@@ -21,10 +21,6 @@ constexpr double kCoarseEpsilon = 2e-2;
 /// How far off the pose may be on a level where surfaces are drawn to surfaces, in its voxels.
 constexpr double kWidth = 0.5;
 
-/// Matches near the guess are no farther apart, in the finest level's voxels: as on the full clouds, where neighbours
-/// of the right match are three spacings away.
-constexpr double kNear = 3.0;
-
 /// The source in the voxels of the target's levels.
 std::vector<CloudLevel> thinnedAlike(const CloudPyramid& source, const CloudPyramid& target, int threads)
 {
@@ -47,7 +43,6 @@ public:
       : source_(source),
         target_(target),
         run_(run),
-        near_(run),
         alignment_(alignment),
         targets_(target.thinnedLevels()),
         sources_(thinnedAlike(source, target, run.threads)),
@@ -57,12 +52,15 @@ public:
   {
   }
 
-  /// Clouds that share half of what they show are drawn away from a good guess by all the rest.
+  /// Clouds that share half of what they show are drawn away from a good guess by all the rest. So matches are never
+  /// farther apart than they are in the end.
   void lookNear()
   {
     if (!sources_.empty()) {
-      near_.max_distance = std::min(run_.max_distance, kNear * targets_.front().voxel);
-      drawSurfaces(0, near_);
+      CloudRegistrationRun near = run_;
+      const double spacing = std::max(sources_.front().spacing, targets_.front().spacing);
+      near.max_distance = std::min(run_.max_distance, kGateSpacings * spacing);
+      drawSurfaces(0, near);
       propose();
     }
   }
@@ -119,7 +117,6 @@ private:
   const CloudPyramid& source_;
   const CloudPyramid& target_;
   const CloudRegistrationRun& run_;
-  CloudRegistrationRun near_;
   CloudAlignment& alignment_;
   const std::vector<CloudLevel>& targets_;
   std::vector<CloudLevel> sources_;

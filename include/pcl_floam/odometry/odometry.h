@@ -61,8 +61,7 @@ public:
   void setMotionHint(const MotionHint& hint);
 
   /// The sensor is at another place of the map than was thought: the next scan is sought there. Map and parameters
-  /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with, nor, by
-  /// surfaces, do those after them until it explains one, for three seconds at most. Before
+  /// stay; the velocity is found anew, and the next three scans do not enter the map that is registered with. Before
   /// the second scan it is the pose of the first. \ref getPose and \ref report tell of it from the next scan on.
   ///
   /// \param world_T_sensor of the next scan, within about 2 m and 10 degrees

@@ -42,7 +42,8 @@ struct StageTimes {
 struct OdometryReport {
   TrackingState state = TrackingState::not_started;
   /// Why it was not `tracked`, or that the sequence was started again. Of a tracked scan: that the poses since the
-  /// first scan have turned out to be wrong, and this one jumps. Empty otherwise.
+  /// first scan have turned out to be wrong, and this one jumps, or that it is the scan before once more. Empty
+  /// otherwise.
   std::string reason;
   SE3 world_T_sensor;  ///< at the instant of the sweep that the parameters name
   /// Seconds from the scan's stamp to that instant, as the points' times tell; 0 if they have none. Of a scan that is
