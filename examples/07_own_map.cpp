@@ -43,7 +43,7 @@ struct NdtMap : pcl_floam::SurfaceMap {
       cell.lasers.set(lasers[i] % 128);
     }
   }
-  void find(const Eigen::Vector3d* p, const std::uint32_t*, std::size_t n, pcl_floam::Surface* surfaces) const override
+  void find(const Eigen::Vector3d* p, std::size_t n, pcl_floam::Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < n; ++i) {
       const auto cell = p[i].allFinite() ? cells.find(keyOf(p[i] / kSide)) : cells.end();

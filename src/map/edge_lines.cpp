@@ -57,8 +57,7 @@ void EdgeLines::insert(const Eigen::Vector3d* places, const std::uint32_t* /*las
   layer_->insertEach(places, count);
 }
 
-void EdgeLines::find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-                     Surface* surfaces) const
+void EdgeLines::find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const
 {
   constexpr std::size_t kTogether = 16;
   std::array<Neighbors, kTogether> nearest;

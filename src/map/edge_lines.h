@@ -35,8 +35,7 @@ public:
   void crop(const Eigen::Vector3d& center, double radius) override { layer_->crop(center, radius); }
 
   [[nodiscard]] bool empty() const override { return layer_->empty(); }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-            Surface* surfaces) const override;
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
 
 private:
   std::unique_ptr<VoxelLayer> layer_;

@@ -1,7 +1,5 @@
 #include "map/surface_fit.h"
 
-#include "map/laser_support.h"
-
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -65,7 +63,7 @@ void CellSums::add(double x, double y, double z, std::uint32_t laser)
   outer[3] += y * y;
   outer[4] += y * z;
   outer[5] += z * z;
-  lasers |= laserBit(laser);
+  lasers |= std::uint64_t{1} << (laser % 64U);  // those of sensors with more than 64 share bits
   ++count;
 }
 

@@ -56,7 +56,7 @@ std::uint32_t VoxelCells::make(const VoxelKey& finest, int level)
   return cell;
 }
 
-void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser, std::uint32_t keyframe)
+void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser)
 {
   leaves_[contents_[cell].child[0]].add(point);
   const Eigen::Vector3d p = point.cast<double>();
@@ -64,7 +64,6 @@ void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint
     constexpr std::uint32_t kMost = std::numeric_limits<std::uint16_t>::max();
     CellSums& sums = contents_[cell].sums;
     sums.add(p.x(), p.y(), p.z(), laser);
-    cells_[cell].support.add(laser, keyframe);
     cells_[cell].count = static_cast<std::uint16_t>(std::min(sums.count, kMost));
     cells_[cell].state.store(kStale, std::memory_order_relaxed);
   }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "map/chunked_pool.h"
-#include "map/laser_support.h"
 #include "map/surface_fit.h"
 #include "map/voxel_table.h"
 
@@ -24,7 +23,6 @@ public:
 
   /// What a lookup reads of a cell. Its shape is worked out when it is first asked for, by whichever thread asks.
   struct alignas(64) Cell {
-    LaserSupport support;
     std::uint32_t parent = 0;  ///< 0: none, it is a block of the greatest side
     std::uint16_t count = 0;   ///< of its points, as far as it goes
     mutable std::atomic<std::uint8_t> state{kStale};
@@ -36,7 +34,6 @@ public:
     Cell(const Cell& other) : Cell() { *this = other; }
     Cell& operator=(const Cell& other)
     {
-      support = other.support;
       parent = other.parent;
       count = other.count;
       shape = other.shape;
@@ -109,7 +106,7 @@ public:
   /// The finest cell of a key, which must not be there yet, with all above it that are not.
   std::uint32_t make(const VoxelKey& finest) { return make(finest, 0); }
   /// Takes a point into a finest cell that is not full, and into all above it.
-  void add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser, std::uint32_t keyframe);
+  void add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser);
 
   /// Drops the blocks, with all in them, that \p is_far holds for. \return the number of their points
   template <typename IsFar>

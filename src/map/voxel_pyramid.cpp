@@ -87,7 +87,7 @@ bool VoxelPyramid::insert(const Place& place, std::uint32_t cell, std::uint32_t 
   if (isNear(cells_.leaf(cell), point)) {
     return false;
   }
-  cells_.add(cell, point, laser, keyframe_);
+  cells_.add(cell, point, laser);
   ++points_;
   return true;
 }
@@ -99,7 +99,6 @@ void VoxelPyramid::crop(const Eigen::Vector3d& center, double radius)
 
 void VoxelPyramid::clear()
 {
-  keyframe_ = 0;
   points_ = 0;
   cells_.clear();
 }

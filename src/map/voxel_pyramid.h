@@ -35,18 +35,15 @@ public:
   }
   [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<VoxelPyramid>(*this); }
 
-  void beginKeyframe() override { ++keyframe_; }
-
   /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
   bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
   void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override;
 
   [[nodiscard]] bool empty() const override { return points_ == 0; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-            Surface* surfaces) const override;
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
 
-  /// The surface at a place that a laser sees: of the finest cell around it whose shape others support.
-  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place, std::uint32_t laser) const;
+  /// The surface at a place: of the finest cell around it that several lasers have seen a shape in.
+  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place) const;
 
   /// Drops the blocks whose centres are farther from \p center than \p radius.
   void crop(const Eigen::Vector3d& center, double radius) override;
@@ -83,7 +80,7 @@ private:
   [[nodiscard]] bool isOfNow(const VoxelCells::Cell& cell, std::uint8_t state) const;
   [[nodiscard]] std::uint8_t versionAround(const VoxelCells::Cell& cell) const;
   Fit fitOf(Found found, CellFit& own) const;
-  void surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const;
+  void surfaceAt(const Place& place, Found found, Surface& surface) const;
   void surfaceIn(Found found, const Place& place, const Fit& fit, Surface& surface) const;
   [[nodiscard]] bool isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const;
   void findNearest(Found cell, const Eigen::Vector3f& center, const Eigen::Vector3f& offset, Nearest& nearest) const;
@@ -93,7 +90,6 @@ private:
   double side_;
   double inverse_side_;
   float squared_spacing_;
-  std::uint32_t keyframe_ = 0;
   std::size_t points_ = 0;
   VoxelCells cells_;
 };

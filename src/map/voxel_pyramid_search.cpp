@@ -88,22 +88,18 @@ VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
   return {own.kind, own.shape, own.along};
 }
 
-Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point, std::uint32_t laser) const
+Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point) const
 {
   Surface surface;
-  find(&point, &laser, 1, &surface);
+  find(&point, 1, &surface);
   return surface;
 }
 
-void VoxelPyramid::surfaceAt(const Place& place, Found found, std::uint32_t laser, Surface& surface) const
+void VoxelPyramid::surfaceAt(const Place& place, Found found, Surface& surface) const
 {
   CellFit own;
   surface.kind = SurfaceKind::unknown;
   for (; found.cell != 0; found.cell = cells_[found.cell].parent, ++found.level) {
-    const VoxelCells::Cell& cell = cells_[found.cell];
-    if (!cell.support.hasTwoBesides(laser, keyframe_)) {
-      continue;
-    }
     const Fit fit = fitOf(found, own);
     if (fit.kind != SurfaceKind::unknown) {
       surfaceIn(found, place, fit, surface);
@@ -195,8 +191,7 @@ void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, 
 }
 
 /// Some at a time, each step of all before the next step: the memory of one comes while another is looked at.
-void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-                        Surface* surfaces) const
+void VoxelPyramid::find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const
 {
   std::array<Place, kAtOnce> place;
   std::array<bool, kAtOnce> is_there{};
@@ -217,7 +212,7 @@ void VoxelPyramid::find(const Eigen::Vector3d* places, const std::uint32_t* lase
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      surfaceAt(place[i], found[i], lasers[begin + i], surfaces[begin + i]);
+      surfaceAt(place[i], found[i], surfaces[begin + i]);
     }
   }
 }

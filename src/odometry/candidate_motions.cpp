@@ -133,13 +133,28 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   return found;
 }
 
+/// Whether the third sweep tells of another motion than the first two: nothing that carries a lidar accelerates so.
+/// Where rings lie on rings of another place, two sweeps fit that do not belong together.
+bool CandidateMotions::hasJumped(const std::vector<Sweep>& kept) const
+{
+  constexpr std::size_t kShown = 3;
+  if (late_->poses.size() != kShown) {
+    return false;
+  }
+  const auto velocity = [&](std::size_t k) {
+    return Eigen::Vector3d((late_->poses[k].middle.translation - late_->poses[k - 1].middle.translation) /
+                           kept[k].periods);
+  };
+  return (velocity(2) - velocity(1)).norm() > search_.same();
+}
+
 /// The late one with those that are followed.
 void CandidateMotions::compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses)
 {
   if (!late_) {
     return;
   }
-  if (late_->is_lost || hypotheses.haveLeftBehind(*late_)) {
+  if (late_->is_lost || hasJumped(kept) || hypotheses.haveLeftBehind(*late_)) {
     late_.reset();
   } else if (late_->poses.size() == kept.size()) {
     hypotheses.dropLeftBehind(*late_);

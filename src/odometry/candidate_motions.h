@@ -49,6 +49,7 @@ private:
   [[nodiscard]] bool isGivenUp(double direction) const;
   bool look(WorkShare& share);
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
+  [[nodiscard]] bool hasJumped(const std::vector<Sweep>& kept) const;
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
   FirstMotionSearch search_;

@@ -1,12 +1,13 @@
 #include "odometry/reason_to_doubt.h"
 
-#include "registration/surface_registration.h"
-
 #include <algorithm>
 
 namespace pcl_floam {
 
 namespace {
+
+/// Part of a scan: what the map explains less of is in doubt.
+constexpr double kBorneOut = 0.5;
 
 bool keepsLevel(const DegreesOfFreedom& locked)
 {

@@ -12,10 +12,6 @@ constexpr Doubt kGiven = {3.0, 0.25};
 /// Part of a sweep that points anywhere would have on surfaces of the map.
 constexpr double kByChance = 0.1;
 
-/// Sweeps in a row that the map does not explain, after which the sensor is taken to be elsewhere, and what it sees
-/// there has to come in: longer than it is covered by a hand, or passes from one room into the next.
-constexpr int kNoWayBack = 30;
-
 /// Distortion Compensation, first stage (Eq. 3 and 4).
 SweepPlacement placementOf(CompensationMode mode)
 {
@@ -48,7 +44,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 {
   map_.emplace(std::move(map));
   keeps_map_ = keeps_map;
-  is_in_doubt_ = true;
+  explanation_ = UsualExplanation::ofPriorMap();
   keyframe_ = guess;
   settle(sweep, guess, kGiven);
   SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
@@ -91,12 +87,12 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   }
   SurfaceRegistration found =
       rivals == Rivals::motions ? registerSurfaces(problem) : registerAround(problem, settings_.side);
-  if ((rivals != Rivals::motions || isLong(sweep)) && found.explained() < kBorneOut && seek(sweep, found)) {
+  if ((rivals != Rivals::motions || isLong(sweep)) && !explanation_.isMet(found.explained()) && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
     again.evidence = problem.evidence;
     found = registerSurfaces(again);
   }
-  return unlessByChance(std::move(found));
+  return rivals == Rivals::motions ? found : unlessByChance(std::move(found));
 }
 
 /// Motion Estimation (Eq. 2).
@@ -193,10 +189,11 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, 
   }
   sweeps_to_wait_ = is_placed_ ? kSweepsUntilKnown : sweeps_to_wait_;
   is_placed_ = false;
-  const bool is_explained = rivals == Rivals::motions || registration.explained() >= kBorneOut;
-  is_in_doubt_ = is_in_doubt_ && !is_explained;
-  unexplained_ = is_explained ? 0 : unexplained_ + 1;
-  is_borne_out_ = is_explained || (!is_in_doubt_ && unexplained_ > kNoWayBack);
+  if (rivals == Rivals::motions) {
+    explanation_.takeUnjudged(registration.explained());
+  } else {
+    explanation_.take(registration.explained());
+  }
   is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }

@@ -9,6 +9,7 @@
 #include "odometry/track_keyframes.h"
 #include "odometry/track_map.h"
 #include "odometry/track_settings.h"
+#include "odometry/usual_explanation.h"
 #include "registration/surface_residuals.h"
 
 #include <cstddef>
@@ -64,15 +65,13 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
-  /// Whether the last sweep may enter the map, which bears it out: what came in at a wrong pose would bear that out.
-  /// Not asked while it is open how the sensor began to move, nor after so long that there is no way back; but a map
-  /// that was made before has to explain one sweep at least.
-  [[nodiscard]] bool isBorneOut() const { return is_borne_out_; }
+  /// Whether the last sweep may enter the map, which bears it out.
+  [[nodiscard]] bool isBorneOut() const { return explanation_.bearsOut(); }
 
   /// Whether the last sweep is far enough from those in the map.
   [[nodiscard]] bool isFar() const { return is_keyframe_; }
   /// Whether the map should take it in.
-  [[nodiscard]] bool isKeyframe() const { return is_keyframe_ && is_borne_out_; }
+  [[nodiscard]] bool isKeyframe() const { return is_keyframe_ && isBorneOut(); }
   /// The map takes in the last sweep, if that is a keyframe.
   void updateMap(const Sweep& sweep) { updateMap(sweep, isKeyframe()); }
   /// The map takes in the last sweep, if somebody wants it to.
@@ -109,10 +108,8 @@ private:
   std::optional<TrackMap> map_;
   mutable SurfaceRoom room_;
   bool keeps_map_ = true;
-  bool is_borne_out_ = true;
-  bool is_in_doubt_ = false;  ///< a map that was made before has explained nothing yet
-  int unexplained_ = 0;       ///< sweeps in a row
-  int sweeps_to_wait_ = 0;    ///< until the map takes in sweeps again
+  UsualExplanation explanation_;
+  int sweeps_to_wait_ = 0;  ///< until the map takes in sweeps again
   bool is_keyframe_ = false;
   MotionEstimate motion_;
   Vector6 velocity_before_ = Vector6::Zero();

@@ -22,7 +22,6 @@ void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const Swe
   constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
   std::array<std::uint32_t, kTogether> lasers;
-  map.beginKeyframe();
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
     const std::size_t count = std::min(kTogether, points.size() - begin);
     sensor.undistorted(&points[begin], 1, count, places.data());
@@ -109,11 +108,8 @@ void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vect
 {
   std::vector<std::uint32_t> lasers(space.size() + edges.size());
   std::iota(lasers.begin(), lasers.end(), 0U);
-  space_->beginKeyframe();
-  edges_.beginKeyframe();
   space_->insert(space.data(), lasers.data(), space.size());
   edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
-  space_->beginKeyframe();  // what has numbers of its own is no laser's latest curve
 }
 
 }  // namespace pcl_floam

@@ -17,29 +17,23 @@ constexpr double kDirectionError = 6e-4;
 /// All of a laser's points share it: of a plane it is the fewest lasers that count, not their points.
 constexpr double kLasersOfAPlane = 3.0;
 
-using Lasers = std::array<std::uint32_t, PlacedPoints::kMost>;
-
-/// Looks for the surfaces of those points alone that are elsewhere than when they were found before: lines of edges,
-/// which are the same for all lasers.
+/// Looks for the surfaces of those points alone that are elsewhere than when they were found before.
 /// \param found of the first one and each \p stride after it
-void findAgain(const SurfaceSearch& target, PlacedPoints& placed, const Lasers& lasers, std::size_t stride,
-               FoundSurface* found)
+void findAgain(const SurfaceSearch& target, PlacedPoints& placed, std::size_t stride, FoundSurface* found)
 {
   constexpr double kNegligible = 0.005;  // m: a quarter of what a return may be off
   std::array<Eigen::Vector3d, PlacedPoints::kMost> moved;
-  Lasers lasers_of_moved;
   std::array<std::size_t, PlacedPoints::kMost> which;
   std::size_t n = 0;
   for (std::size_t i = 0; i < placed.count; ++i) {
     const Eigen::Vector3d& place = placed.points[i].place;
     if (!((place - found[i * stride].at).squaredNorm() < kNegligible * kNegligible)) {
       moved[n] = place;
-      lasers_of_moved[n] = lasers[i];
       which[n++] = i * stride;
     }
   }
   if (n > 0) {
-    target.find(moved.data(), lasers_of_moved.data(), n, placed.surfaces.data());
+    target.find(moved.data(), n, placed.surfaces.data());
   }
   for (std::size_t k = 0; k < n; ++k) {
     found[which[k]] = {moved[k], placed.surfaces[k]};
@@ -59,11 +53,10 @@ std::size_t PlacedPoints::chunksOf(const SurfaceTerm& term, std::size_t stride)
 }
 
 PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& term, std::size_t chunk,
-                           std::size_t stride, FoundSurface* found, bool knows_lasers)
+                           std::size_t stride, FoundSurface* found)
     : begin(chunk * kMost), count(std::min((term.points->size() + stride - 1) / stride - begin, kMost))
 {
   std::array<Eigen::Vector3d, kMost> places;
-  Lasers lasers;
   const ScanPoint* taken = term.points->data() + begin * stride;
   sensor.undistorted(taken, stride, count, places.data());
   const SE3& pose = sensor.pose();
@@ -73,12 +66,11 @@ PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& ter
     points[i].arm = pose.rotation * places[i];  // seen from mid-sweep
     points[i].place = places[i] = pose.translation + points[i].arm;
     points[i].since_middle = sensor.sinceReference(static_cast<double>(point.time));
-    lasers[i] = knows_lasers ? point.laser : kNoLaser;
   }
   if (found == nullptr) {
-    term.target->find(places.data(), lasers.data(), count, surfaces.data());
+    term.target->find(places.data(), count, surfaces.data());
   } else {
-    findAgain(*term.target, *this, lasers, stride, found + begin * stride);
+    findAgain(*term.target, *this, stride, found + begin * stride);
   }
 }
 

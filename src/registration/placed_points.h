@@ -32,9 +32,8 @@ struct PlacedPoints {
 
   /// The next ones of a term, one in so many.
   /// \param found before, of all points of the term: those that have hardly moved keep it; nullptr: it is not kept
-  /// \param knows_lasers else a laser's own curve is a surface for its points, too
   PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& term, std::size_t chunk, std::size_t stride,
-               FoundSurface* found, bool knows_lasers = true);
+               FoundSurface* found);
 
   /// So many make up a term.
   [[nodiscard]] static std::size_t chunksOf(const SurfaceTerm& term, std::size_t stride);

@@ -52,7 +52,7 @@ double SurfaceEvidence::of(const SurfaceTerm& scan, const SurfaceTerm& edges, st
     const auto c = static_cast<std::size_t>(part);
     const bool is_edges = c >= of_scan;
     const PlacedPoints placed(sensor, is_edges ? edges : scan, is_edges ? c - of_scan : c, 1,
-                              is_edges ? found.data() : nullptr, knows_lasers);
+                              is_edges ? found.data() : nullptr);
     for (std::size_t i = 0; i < placed.count; ++i) {
       const double evidence = evidenceOf(placed.points[i], placed.surfaces[i]);
       parts[c] += evidence;

@@ -10,8 +10,7 @@ namespace pcl_floam {
 
 /// Log-likelihoods per independent residual, over those of points that may be anywhere within a metre.
 struct SurfaceEvidence {
-  SweepTrajectory sensor;    ///< its reference is mid-sweep
-  bool knows_lasers = true;  ///< else a laser's own curve bears out its points, too
+  SweepTrajectory sensor;  ///< its reference is mid-sweep
   int threads = 1;
 
   /// Of all points and edges: the same bits for every number of threads.

@@ -63,18 +63,12 @@ public:
   }
 
 private:
-  /// At rest a laser draws the same curve again, place by place. What is no information about the pose is evidence for
-  /// it; but so it does on smooth ground that goes by, and points that are asked one by one are not to be borne out by
-  /// it.
   void weighEvidence(SurfaceRegistration& result)
   {
-    SurfaceEvidence evidence{trajectory()};
-    evidence.threads = problem_.threads;
-    if (problem_.evidence == Evidence::of_points) {
-      static_cast<void>(evidence.of(problem_.scan, SurfaceTerm(), room_.edges, &result.point_evidence));
-    }
-    evidence.knows_lasers = false;
-    result.evidence = evidence.of(problem_.scan, problem_.edges, room_.edges, nullptr);
+    const SurfaceEvidence evidence{trajectory(), problem_.threads};
+    const bool is_of_points = problem_.evidence == Evidence::of_points;
+    result.evidence =
+        evidence.of(problem_.scan, problem_.edges, room_.edges, is_of_points ? &result.point_evidence : nullptr);
   }
 
   SurfaceSums iterate(RegistrationReport& report)

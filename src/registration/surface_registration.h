@@ -62,10 +62,9 @@ struct SurfaceRegistration {
   /// Log-likelihood per independent residual of the points where the pose has them, over that of points that may be
   /// anywhere within a metre.
   double evidence = 0.0;
-  /// Of the scan's points (\ref Evidence::of_points), without what a laser's own curve tells.
-  std::vector<float> point_evidence;
-  Matrix6 told = Matrix6::Zero();  ///< covariance of the pose as the scan alone tells it, whatever was expected
-  std::size_t points = 0;          ///< that took part
+  std::vector<float> point_evidence;  ///< of the scan's points (\ref Evidence::of_points)
+  Matrix6 told = Matrix6::Zero();     ///< covariance of the pose as the scan alone tells it, whatever was expected
+  std::size_t points = 0;             ///< that took part
 
   /// Part of the points that lie on surfaces of the target.
   [[nodiscard]] double explained() const
@@ -73,9 +72,6 @@ struct SurfaceRegistration {
     return points > 0 ? static_cast<double>(report.plane_inliers) / static_cast<double>(points) : 0.0;
   }
 };
-
-/// What the map explains less of is in doubt.
-inline constexpr double kBorneOut = 0.5;
 
 /// Bit-identical for every number of threads.
 [[nodiscard]] SurfaceRegistration registerSurfaces(const SurfaceProblem& problem);

@@ -15,7 +15,7 @@ namespace {
 Surface lineAt(const EdgeLines& map, const Eigen::Vector3d& place)
 {
   Surface surface;
-  map.find(&place, &kNoLaser, 1, &surface);
+  map.find(&place, 1, &surface);
   return surface;
 }
 
@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> post(const Eigen::Vector3d& foot, const Eigen::Vect
 
 void insert(EdgeLines& map, const std::vector<Eigen::Vector3d>& edges)
 {
-  const std::vector<std::uint32_t> lasers(edges.size(), kNoLaser);
+  const std::vector<std::uint32_t> lasers(edges.size());
   map.insert(edges.data(), lasers.data(), edges.size());
 }
 
@@ -92,9 +92,8 @@ TEST(EdgeLines, EachOfManyPlacesHasItsOwnLine)
     insert(map, post({places[i].x(), 0.1, 0.0}, Eigen::Vector3d::UnitZ(), 0.2));
   }
   places.emplace_back(std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0);
-  const std::vector<std::uint32_t> lasers(places.size(), 0);
   std::vector<Surface> surfaces(places.size());
-  map.find(places.data(), lasers.data(), places.size(), surfaces.data());
+  map.find(places.data(), places.size(), surfaces.data());
   for (std::size_t i = 0; i < kPosts; ++i) {
     ASSERT_EQ(surfaces[i].kind, SurfaceKind::line);
     EXPECT_NEAR((surfaces[i].center - places[i]).head<2>().norm(), 0.1, 1e-5);

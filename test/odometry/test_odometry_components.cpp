@@ -142,7 +142,7 @@ TEST(OdometryComponents, AMapOfOnesOwnServesAsTheOdometrysDoes)
   for (int k = 0; k < kFewScans; ++k) {
     EXPECT_TRUE(sameBits(own[k].world_T_sensor, usual[k].world_T_sensor)) << k;
   }
-  EXPECT_GT(counts->keyframes, 0);
+  EXPECT_GT(counts->places, 0);
 }
 
 TEST(OdometryComponents, PointsOfOnesOwnChoiceAreRegistered)

@@ -18,8 +18,7 @@ constexpr double kBeside = 4.0;  // m: there is the floor alone
 class Shelves : public SurfaceSearch {
 public:
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       Surface plane;

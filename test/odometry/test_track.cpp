@@ -111,12 +111,11 @@ TEST(TrackMap, OneThatHasServedBeforeIsAsANewOne)
   for (const ScanPoint& point : sweep.dense) {
     places.emplace_back(point.x + 0.05, point.y, point.z + 0.02);
   }
-  const std::vector<std::uint32_t> lasers(count, kNoLaser);
   for (const auto part : {&TrackMap::space, &TrackMap::edges}) {
     std::vector<Surface> found(count);
     std::vector<Surface> expected(count);
-    (again.*part)().find(places.data(), lasers.data(), count, found.data());
-    (fresh.*part)().find(places.data(), lasers.data(), count, expected.data());
+    (again.*part)().find(places.data(), count, found.data());
+    (fresh.*part)().find(places.data(), count, expected.data());
     std::size_t surfaces = 0;
     for (std::size_t i = 0; i < count; ++i) {
       ASSERT_EQ(found[i].kind, expected[i].kind);

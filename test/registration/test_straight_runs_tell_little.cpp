@@ -22,8 +22,7 @@ public:
   explicit Columns(SurfaceKind kind) : kind_(kind) {}
 
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       surfaces[i] = Surface();

@@ -32,8 +32,7 @@ double distance(const SE3& a, const SE3& b)
 class Everywhere : public SurfaceSearch {
 public:
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       surfaces[i] = surface;
@@ -70,7 +69,6 @@ std::vector<Eigen::Vector3d> edgesOfPosts(double lowest, const Eigen::Vector3d& 
 EdgeLines linesOf(const std::vector<Eigen::Vector3d>& edges)
 {
   EdgeLines lines;
-  lines.beginKeyframe();
   lines.insert(edges.data(), std::vector<std::uint32_t>(edges.size(), 0).data(), edges.size());
   return lines;
 }

@@ -102,8 +102,7 @@ public:
   }
 
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       surfaces[i] = Surface();
@@ -133,8 +132,7 @@ private:
 class Lattice : public SurfaceSearch {
 public:
   [[nodiscard]] bool empty() const override { return false; }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
     for (std::size_t i = 0; i < count; ++i) {
       surfaces[i] = Surface();

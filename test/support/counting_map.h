@@ -13,7 +13,6 @@ class CountingMap : public SurfaceMap {
 public:
   /// Of all maps that are made from the first.
   struct Counts {
-    std::atomic<int> keyframes{0};
     std::atomic<int> places{0};  ///< looked up, or taken in
   };
 
@@ -26,21 +25,15 @@ public:
   [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<CountingMap>(*this); }
   [[nodiscard]] bool empty() const override { return map_.empty(); }
   void clear() override { map_.clear(); }
-  void beginKeyframe() override
-  {
-    map_.beginKeyframe();
-    ++counts_->keyframes;
-  }
   void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override
   {
     map_.insert(places, lasers, count);
     counts_->places += static_cast<int>(count);
   }
   void crop(const Eigen::Vector3d& center, double radius) override { map_.crop(center, radius); }
-  void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-            Surface* surfaces) const override
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override
   {
-    map_.find(places, lasers, count, surfaces);
+    map_.find(places, count, surfaces);
     counts_->places += static_cast<int>(count);
   }
 

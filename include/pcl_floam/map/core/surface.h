@@ -36,9 +36,6 @@ struct Surface {
   double width = 0.0;  ///< m^2: variance of the points along \ref wide; 0: not known
 };
 
-/// The laser of a point that is compared with all there is, its own laser's curves included.
-inline constexpr std::uint32_t kNoLaser = 0xFFFFFFFFU;
-
 /// Where a registration looks for surfaces. One's own can be handed in, in place of a \ref KeyframeVoxelMap.
 class SurfaceSearch {
 public:
@@ -49,11 +46,8 @@ public:
 
   /// The surface at each of \p count places; `unknown` where there is none. Safe to call from several threads.
   /// \param places   world frame, m; one that is not finite has none
-  /// \param lasers   the scan line that saw each (without scan lines a part of the sweep): what it drew itself is no
-  ///                 support for its points; everything is for \ref kNoLaser
   /// \param surfaces room for \p count answers
-  virtual void find(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count,
-                    Surface* surfaces) const = 0;
+  virtual void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const = 0;
 };
 
 }  // namespace pcl_floam

@@ -31,10 +31,7 @@ public:
   /// Forgets all. Its memory may be used again.
   virtual void clear() = 0;
 
-  /// What comes in from now on is of another keyframe.
-  virtual void beginKeyframe() {}
-
-  /// Takes in some points of the keyframe.
+  /// Takes in some points of a keyframe.
   /// \param places m, in the map's frame; undistorted
   /// \param lasers the scan line that saw each; without scan lines the part of the sweep, in the cloud's order; points
   ///               of a single layer, and of a map that was made before, have a number each
