@@ -39,6 +39,9 @@ std::vector<float> evidenceByPlace(const std::vector<float>& of_points, const st
 void PlaceVotes::add(const std::vector<float>& own, const std::vector<float>& others)
 {
   for (std::size_t i = 0; i < std::min(own.size(), others.size()); ++i) {
+    if (own[i] == 0.0F || others[i] == 0.0F) {
+      continue;  // one of the maps knows nothing there: a sensor that has moved less has seen less
+    }
     lead_ += static_cast<double>(others[i] > own[i]) - static_cast<double>(others[i] < own[i]);
     differing_ += static_cast<double>(others[i] != own[i]);
   }

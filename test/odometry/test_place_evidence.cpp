@@ -33,7 +33,7 @@ struct Scene {
       add(4.0 + 0.001 * i, 2.1 + 0.0001 * i, 0.1F, -0.2F);
     }
     for (int i = 0; i < 200; ++i) {
-      add(0.7 * (i - 100), i % 2 == 0 ? -8.0 : 12.0, 0.0F, 0.1F);
+      add(0.7 * (i - 100), i % 2 == 0 ? -8.0 : 12.0, 0.02F, 0.1F);
     }
   }
 
@@ -91,7 +91,7 @@ TEST(PlaceEvidence, TheRoadOutvotesACarOfManyMorePoints)
 TEST(PlaceEvidence, SweepsThatSeeTheSameTellNoMoreThanOne)
 {
   constexpr std::size_t kPlaces = 100;
-  const std::vector<float> even(kPlaces, 0.0F);
+  const std::vector<float> even(kPlaces, 0.5F);
   std::vector<float> others(kPlaces, -1.0F);
   const auto isSure = [&](std::size_t better, int sweeps) {
     std::fill(others.begin(), others.begin() + static_cast<std::ptrdiff_t>(better), 1.0F);
@@ -106,6 +106,16 @@ TEST(PlaceEvidence, SweepsThatSeeTheSameTellNoMoreThanOne)
     EXPECT_TRUE(isSure(71, sweeps)) << sweeps;
     std::fill(others.begin(), others.end(), -1.0F);
   }
+}
+
+/// A sensor that has moved less has seen less, and its map would lose for that alone.
+TEST(PlaceEvidence, WhereOneMapKnowsNothingThereIsNoVote)
+{
+  const std::vector<float> nothing(1000, 0.0F);
+  const std::vector<float> something(1000, 0.3F);
+  PlaceVotes votes;
+  votes.add(nothing, something);
+  EXPECT_FALSE(votes.areSurelyAgainst());
 }
 
 TEST(PlaceEvidence, WhatBothExplainAlikeDoesNotVote)

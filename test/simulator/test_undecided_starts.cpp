@@ -84,7 +84,7 @@ TEST(UndecidedStarts, AreNotDecidedByAConvoy)
 TEST(UndecidedStarts, AreSettledWhenOneMotionIsLeft)
 {
   constexpr int kLong = 60;  // scans
-  FirstScans scans(slowlyTold());
+  FirstScans scans(slowlyTold(3, 7.0));
   int undecided = 0;
   OdometryReport report;
   for (int number = 0; number < kLong; ++number) {
