@@ -133,19 +133,20 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   return found;
 }
 
-/// Whether the third sweep tells of another motion than the first two: nothing that carries a lidar accelerates so.
-/// Where rings lie on rings of another place, two sweeps fit that do not belong together.
+/// Whether the third sweep tells of another motion than the first two: at some ten sweeps a second nothing that carries
+/// a lidar accelerates so. Where rings lie on rings of another place, two sweeps fit that do not belong together.
 bool CandidateMotions::hasJumped(const std::vector<Sweep>& kept) const
 {
   constexpr std::size_t kShown = 3;
   if (late_->poses.size() != kShown) {
     return false;
   }
-  const auto velocity = [&](std::size_t k) {
-    return Eigen::Vector3d((late_->poses[k].middle.translation - late_->poses[k - 1].middle.translation) /
-                           kept[k].periods);
+  const auto way = [&](std::size_t k) {
+    return Eigen::Vector3d(late_->poses[k].middle.translation - late_->poses[k - 1].middle.translation);
   };
-  return (velocity(2) - velocity(1)).norm() > search_.same();
+  const double longer = kept[2].periods / kept[1].periods;
+  const double apart = search_.same() * kept[1].periods;  // m
+  return (way(2) - longer * way(1)).norm() > apart * std::max(1.0, longer);
 }
 
 /// The late one with those that are followed.

@@ -6,8 +6,8 @@ namespace pcl_floam {
 
 namespace {
 
-/// Part of a scan: what the map explains less of is in doubt.
-constexpr double kBorneOut = 0.5;
+/// Part of a scan: a pose is in doubt if less lies on surfaces of the map, whatever is usual in the scene.
+constexpr double kMostOfTheScan = 0.5;
 
 bool keepsLevel(const DegreesOfFreedom& locked)
 {
@@ -23,7 +23,7 @@ const char* reasonToDoubt(const Tracker& tracker, ScanLineFailure failure, doubl
   if (tracker.isUndecided()) {
     return "several motions explain the first scans: the pose may be wrong";
   }
-  if (explained < kBorneOut && !tracker.isOpen()) {
+  if (explained < kMostOfTheScan && !tracker.isOpen()) {
     return "the map has no surface for most of the scan: the pose may be wrong";
   }
   if (failure == ScanLineFailure::too_few_lines) {

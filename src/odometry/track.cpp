@@ -29,10 +29,11 @@ bool isLong(const Sweep& sweep)
   return sweep.periods > kLong;
 }
 
-/// What fits no better than points anywhere would is no pose.
-SurfaceRegistration unlessByChance(SurfaceRegistration found)
+/// What fits no better than points anywhere would is no pose, unless the map has never explained more.
+SurfaceRegistration unlessByChance(SurfaceRegistration found, const UsualExplanation& usual)
 {
-  if (found.report.hasConverged() && found.explained() < kByChance) {
+  const double explained = found.explained();
+  if (found.report.hasConverged() && explained < kByChance && !usual.isMet(explained)) {
     found.report.termination = Termination::too_few_correspondences;
   }
   return found;
@@ -47,7 +48,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
   explanation_ = UsualExplanation::ofPriorMap();
   keyframe_ = guess;
   settle(sweep, guess, kGiven);
-  SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)));
+  SurfaceRegistration found = unlessByChance(registerSurfaces(problemFor(sweep)), explanation_);
   if (found.report.hasConverged()) {
     update(sweep, found, Rivals::none);
     updateMap(sweep);
@@ -92,7 +93,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
     again.evidence = problem.evidence;
     found = registerSurfaces(again);
   }
-  return rivals == Rivals::motions ? found : unlessByChance(std::move(found));
+  return unlessByChance(std::move(found), explanation_);
 }
 
 /// Motion Estimation (Eq. 2).

@@ -65,7 +65,8 @@ public:
   /// \param rivals if there are any, \ref evidence goes on
   SurfaceRegistration step(const Sweep& sweep, Rivals rivals = Rivals::none);
 
-  /// Whether the last sweep may enter the map, which bears it out.
+  /// Whether the last sweep may enter the map, which bears it out; any may while it is open how the sensor began to
+  /// move.
   [[nodiscard]] bool isBorneOut() const { return explanation_.bearsOut(); }
 
   /// Whether the last sweep is far enough from those in the map.

@@ -37,7 +37,7 @@ public:
     }
   }
 
-  /// While it is open how the sensor began to move.
+  /// While it is open how the sensor began to move: motions are judged by others, and each makes its own map.
   void takeUnjudged(double explained)
   {
     constexpr double kRemembered = 10.0;  // sweeps

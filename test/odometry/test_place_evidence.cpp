@@ -113,9 +113,13 @@ TEST(PlaceEvidence, WhereOneMapKnowsNothingThereIsNoVote)
 {
   const std::vector<float> nothing(1000, 0.0F);
   const std::vector<float> something(1000, 0.3F);
+  const std::vector<float> contradicted(1000, -0.3F);
   PlaceVotes votes;
   votes.add(nothing, something);
+  votes.add(contradicted, nothing);
   EXPECT_FALSE(votes.areSurelyAgainst());
+  votes.add(contradicted, something);
+  EXPECT_TRUE(votes.areSurelyAgainst());
 }
 
 TEST(PlaceEvidence, WhatBothExplainAlikeDoesNotVote)
