@@ -21,7 +21,7 @@ public:
   /// \param explained part of a sweep's points that lie on surfaces of the map
   [[nodiscard]] bool isMet(double explained) const
   {
-    constexpr double kPart = 0.5;
+    constexpr double kPart = 0.5;  // what comes into view anew is the smaller part of a sweep
     return explained >= kPart * usual_;
   }
 

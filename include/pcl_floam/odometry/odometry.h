@@ -21,8 +21,8 @@ namespace pcl_floam {
 /// What becomes of a map that was made before.
 enum class MapUse : std::uint8_t {
   frozen,       ///< it stays as it is: localisation whose error does not grow
-  kept_current  ///< keyframes are added, by surfaces once it has explained a scan; what they see through, or is beyond
-                ///< its horizon, is forgotten
+  kept_current  ///< keyframes are added, by surfaces once it has explained half of a scan; what they see through, or is
+                ///< beyond its horizon, is forgotten
 };
 
 /// The odometry for scans whose point type is known only at run time (\ref CloudView).
