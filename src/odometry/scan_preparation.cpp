@@ -55,6 +55,9 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   if (timing.duration > 0.0 && period > 0.0) {
     sweep_fraction *= std::min(1.0, timing.duration / period);
   }
+  if (lines.valid()) {
+    isolated_.leaveOut(returnsOf(scan, parameters), lines);
+  }
 }
 
 bool PreparedScan::assumeTimes(const CloudView& scan, const OdometryParameters& parameters)

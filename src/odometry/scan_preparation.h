@@ -3,6 +3,7 @@
 #pragma once
 
 #include "filters/feature_selection.h"
+#include "filters/isolated_returns.h"
 #include "filters/line_grouping.h"
 
 #include <pcl_floam/filters/core/features.h>
@@ -42,6 +43,7 @@ private:
   bool turns_ = false;          ///< as an earlier scan showed
   std::size_t lines_seen_ = 0;  ///< at most, in a scan
   LineGrouping grouping_;
+  IsolatedReturns isolated_;
   std::vector<FeatureSelection> selections_;
 };
 

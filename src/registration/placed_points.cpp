@@ -20,13 +20,13 @@ constexpr double kLasersOfAPlane = 3.0;
 /// \param found of the first one and each \p stride after it
 void findAgain(const SurfaceSearch& target, PlacedPoints& placed, std::size_t stride, FoundSurface* found)
 {
-  constexpr double kNegligible = 0.005;  // m: a quarter of what a return may be off
+  constexpr double kUnmoved = 0.005;  // m: a quarter of what a return may be off
   std::array<Eigen::Vector3d, PlacedPoints::kMost> moved;
   std::array<std::size_t, PlacedPoints::kMost> which;
   std::size_t n = 0;
   for (std::size_t i = 0; i < placed.count; ++i) {
     const Eigen::Vector3d& place = placed.points[i].place;
-    if (!((place - found[i * stride].at).squaredNorm() < kNegligible * kNegligible)) {
+    if (!((place - found[i * stride].at).squaredNorm() < kUnmoved * kUnmoved)) {
       moved[n] = place;
       which[n++] = i * stride;
     }

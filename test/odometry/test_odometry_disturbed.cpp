@@ -105,6 +105,25 @@ TEST(OdometryDisturbed, PointsAnywhereAreNoPose)
   }
 }
 
+/// As of rain, sunlight and other lidars: one return in twenty, which each have a place of their own.
+TEST(OdometryDisturbed, ReturnsAtAnyRangeAreNotTheScene)
+{
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> any_range(1.0F, 60.0F);
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud scan = sweep(steadyPath, k);
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (random() % 20 == 0) {
+        scan[i].getVector3fMap() = any_range(random) * scan[i].getVector3fMap().normalized();
+      }
+    }
+    const OdometryReport& report = odometry.track(scan);
+    EXPECT_TRUE(k == 0 || report.state == TrackingState::tracked) << "scan " << k << report.reason;
+    EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
+  }
+}
+
 /// Further from where it was expected than any motion tells of.
 TEST(OdometryDisturbed, IsFoundAgainAfterAJump)
 {
