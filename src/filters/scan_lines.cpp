@@ -1,8 +1,12 @@
 #include <pcl_floam/filters/scan_lines.h>
 
+#include "common/median.h"
+#include "filters/azimuth.h"
 #include "filters/line_grouping.h"
+#include "filters/scan_line_finders.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pcl_floam {
@@ -89,13 +93,22 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 
 }  // namespace
 
-std::size_t ScanLines::seenLines() const
+std::size_t linesAbreast(const CloudView& cloud, const ScanLines& lines)
 {
-  std::size_t seen = 0;
-  for (std::size_t m = 0; m < lines(); ++m) {
-    seen += begin[m] < begin[m + 1] ? 1 : 0;
+  constexpr std::size_t kSectors = 128;  // of a turn: several columns of most lidars
+  std::array<std::size_t, kSectors> seen{};
+  std::array<std::size_t, kSectors> last{};  // line, counted from one
+  for (std::size_t m = 1; m <= lines.lines(); ++m) {
+    for (std::int32_t n = lines.begin[m - 1]; n < lines.begin[m]; ++n) {
+      const auto i = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
+      const float turns = 0.25F * pseudoAzimuth(cloud.x(i), cloud.y(i));
+      const std::size_t sector = std::min(static_cast<std::size_t>(turns * kSectors), kSectors - 1);
+      seen[sector] += last[sector] != m ? 1 : 0;
+      last[sector] = m;
+    }
   }
-  return seen;
+  const auto none = std::remove(seen.begin(), seen.end(), std::size_t{0});
+  return medianOf(seen.begin(), none);
 }
 
 void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,

@@ -35,12 +35,14 @@ bool isSingleLayer(const CloudView& scan)
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
   findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
-  lines_seen_ = std::max(lines_seen_, lines.seenLines());
-  if (lines.valid() && lines_seen_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
+  if (most_abreast_ < kFewestLines) {
+    most_abreast_ = std::max(most_abreast_, linesAbreast(scan, lines));
+  }
+  if (lines.valid() && most_abreast_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
     lines = ScanLines();
     lines.failure = ScanLineFailure::too_few_lines;
   }
-  if (!lines.valid() && lines_seen_ <= 1 && isSingleLayer(scan)) {
+  if (!lines.valid() && most_abreast_ <= 1 && isSingleLayer(scan)) {
     lines.failure = ScanLineFailure::single_layer;
   }
   const auto timingBy = [&](ScanTimingSource source) {

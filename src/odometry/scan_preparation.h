@@ -40,8 +40,8 @@ struct PreparedScan {
   void describeIn(OdometryReport& report) const;
 
 private:
-  bool turns_ = false;          ///< as an earlier scan showed
-  std::size_t lines_seen_ = 0;  ///< at most, in a scan
+  bool turns_ = false;            ///< as an earlier scan showed
+  std::size_t most_abreast_ = 0;  ///< scan lines, of the scans so far
   LineGrouping grouping_;
   IsolatedReturns isolated_;
   std::vector<FeatureSelection> selections_;

@@ -106,6 +106,28 @@ TEST(Odometry, ALidarOfFourLayersIsNeverCalledTracked)
   }
 }
 
+/// As every eighth point of a file of 32 lines leaves them: each line is there somewhere, and no two neighbours side by
+/// side.
+TEST(Odometry, AScanOfFourLinesInEachDirectionIsNeverCalledTracked)
+{
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
+  Odometry<PointXYZIRT> odometry(defaults());
+  for (int k = 0; k < kScans; ++k) {
+    Cloud thinned;
+    for (const PointXYZIRT& point : sweep(steadyPath, k)) {
+      const auto part = static_cast<int>(2.0 * (4.0 + std::atan2(point.y, point.x)));
+      if (point.ring % 8 == part % 8) {
+        thinned.push_back(point);
+      }
+    }
+    const OdometryReport& report = odometry.track(thinned);
+    EXPECT_EQ(report.scan_line_failure, ScanLineFailure::too_few_lines);
+    EXPECT_NE(report.state, TrackingState::tracked) << "scan " << k;
+  }
+}
+
 /// Of height, roll and pitch it tells nothing, whatever fits: it is tracked only where these are kept.
 TEST(Odometry, ALidarOfASingleLayerIsTrackedOnlyInThePlane)
 {

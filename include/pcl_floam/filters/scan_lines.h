@@ -60,8 +60,6 @@ struct ScanLines {
   bool sorted_by_azimuth = false;
 
   [[nodiscard]] std::size_t lines() const { return begin.empty() ? 0 : begin.size() - 1; }
-  /// Those that have points.
-  [[nodiscard]] std::size_t seenLines() const;
   [[nodiscard]] bool valid() const { return failure == ScanLineFailure::none && lines() > 0; }
 };
 
