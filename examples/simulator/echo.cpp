@@ -25,6 +25,12 @@ double paneReflection(double cosine)
   return kPaneReflection + (1.0 - kPaneReflection) * std::pow(1.0 - cosine, 5.0);
 }
 
+/// As of a drop.
+Echo falseEcho(double range)
+{
+  return {{static_cast<float>(range), 1.0F, kDrop, 0.0F, Eigen::Vector3f::Zero(), false}, true};
+}
+
 }  // namespace
 
 /// A wide beam that meets an edge lights two surfaces at once: if they are less than a pulse apart, their echoes melt
@@ -98,12 +104,15 @@ std::optional<Echo> EchoModel::echoByGloss(const RayScene& scene, const Pulse& p
 
 std::optional<Echo> EchoModel::echo(const RayScene& scene, const Pulse& pulse, Random& random) const
 {
+  if (weather_.stray > 0.0 && random.chance(weather_.stray)) {
+    return falseEcho(random.uniform(lidar_.min_range, lidar_.max_range));
+  }
   RayHit hit = footprint(scene, pulse, random);
   if (!weather_.isClear()) {
     const auto range = static_cast<float>(weather_.drawReturn(random));
     if (range<hit.distance&& static_cast<double>(range)> lidar_.min_range &&
         static_cast<double>(range) < lidar_.max_range) {
-      return Echo{{range, 1.0F, kDrop, 0.0F, Eigen::Vector3f::Zero(), false}, true};
+      return falseEcho(static_cast<double>(range));
     }
   }
   if (!hit.exists()) {

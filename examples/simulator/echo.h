@@ -23,7 +23,7 @@ struct Pulse {
 /// A pulse's echo.
 struct Echo {
   RayHit hit;
-  bool ghost = false;  ///< no surface is there: a mirror image, rain, snow or dust
+  bool ghost = false;  ///< no surface is there: a mirror image, rain, snow, dust or stray light
 };
 
 /// Sends pulses into a scene.

@@ -78,6 +78,9 @@ void describeWorld(CLI::App& app, sim::SimulationOptions& options)
   app.add_option("--snow", options.weather.snow, "mm/h of water")->capture_default_str();
   app.add_option("--dust", options.weather.dust, "Dust or fog: extinction in 1/m, three over the visibility")
       ->capture_default_str();
+  app.add_option("--stray", options.weather.stray,
+                 "Part of the beams that return any range, by sunlight or another lidar")
+      ->capture_default_str();
 }
 
 void describeSensor(CLI::App& app, Arguments& arguments)

@@ -44,6 +44,7 @@ SimulationOptions checked(const SimulationOptions& options)
   check(weather.rain >= 0.0 && weather.rain <= 200.0, "the rain must be from 0 to 200 mm/h");
   check(weather.snow >= 0.0 && weather.snow <= 20.0, "the snow must be from 0 to 20 mm/h of water");
   check(weather.dust >= 0.0 && weather.dust <= 1.0, "the dust's extinction must be from 0 to 1 1/m");
+  check(weather.stray >= 0.0 && weather.stray <= 1.0, "stray returns must be a part of the beams, from 0 to 1");
   check(!options.speed || (*options.speed >= 1.0 && *options.speed <= 60.0), "the speed must be from 1 to 60 m/s");
   check(options.rate >= 1.0 && options.rate <= 100.0, "the rate must be from 1 to 100 sweeps a second");
   return options;

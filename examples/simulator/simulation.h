@@ -79,7 +79,7 @@ struct Sweep {
   std::vector<Eigen::Vector3f> exact_at_end;
   /// For each point of \ref cloud: 1 if it lies on a moving object.
   std::vector<std::uint8_t> moving;
-  /// For each point of \ref cloud: 1 if no surface is there: mirror images, rain, snow, dust.
+  /// For each point of \ref cloud: 1 if no surface is there: mirror images, rain, snow, dust, stray light.
   std::vector<std::uint8_t> ghost;
   SE3 world_T_start, world_T_middle, world_T_end;  ///< the sensor's exact poses
 };

@@ -1,5 +1,5 @@
 /// \file weather.h
-/// Rain, snow and dust between a lidar and what it sees.
+/// Rain, snow, dust and other light between a lidar and what it sees.
 #pragma once
 
 #include "random.h"
@@ -11,6 +11,8 @@ struct Weather {
   double rain = 0.0;  ///< mm/h
   double snow = 0.0;  ///< mm/h of water
   double dust = 0.0;  ///< 1/m, extinction; visibility is about 3 over it
+  /// Part of the beams for whose echo sunlight or another lidar is taken, at any range.
+  double stray = 0.0;
 
   [[nodiscard]] bool isClear() const { return rain <= 0.0 && snow <= 0.0 && dust <= 0.0; }
 

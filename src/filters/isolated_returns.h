@@ -1,9 +1,10 @@
 /// \file isolated_returns.h
-/// Returns that no other one lies beside, as those of rain, dust, sunlight and other lidars.
+/// Returns that no other one lies beside, as those of sunlight, other lidars and rain.
 #pragma once
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/scan_lines.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -13,19 +14,25 @@ namespace pcl_floam {
 /// Kept from scan to scan: its memory is used again.
 class IsolatedReturns {
 public:
-  /// Takes out of the scan lines what no neighbour bears out, on its own line or in the same direction on the next
+  /// Takes out of a scan's lines what no neighbour bears out, on its own line or in the same direction on the next
   /// ones. Samples that are even in space would hold hardly anything else: each such return has a place of its own.
-  /// \param returns that refer to those lines
-  void leaveOut(const ScanReturns& returns, ScanLines& lines);
+  void leaveOut(const CloudView& cloud, ScanLines& lines);
 
 private:
-  void findAloneOnLine(const ScanReturns& returns, std::size_t line);
-  void keepBesideOthers(const ScanReturns& returns);
+  struct Isolated {
+    std::int32_t place;  // in the list of the lines
+    std::uint32_t line;
+  };
+
+  void findOnLine(const CloudView& cloud, const ScanLines& lines, std::size_t line);
+  void keepBesideOthers(const CloudView& cloud, const ScanLines& lines);
   void takeOut(ScanLines& lines) const;
 
-  std::vector<float> squared_range_;    // m^2, of a line
-  std::vector<std::int32_t> is_alone_;  // on it
-  std::vector<ScanPoint> alone_;        // of all lines
+  float least_reach_ = 0.0F;                 // m^2, see below
+  std::array<std::vector<float>, 3> along_;  // m, coordinates along a line, and some beyond its ends
+  std::vector<std::int32_t> is_lonely_;      // on it
+  std::vector<Isolated> isolated_;
+  std::vector<float> steps_;  // m^2
 };
 
 }  // namespace pcl_floam

@@ -95,14 +95,21 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 
 std::size_t linesAbreast(const CloudView& cloud, const ScanLines& lines)
 {
-  constexpr std::size_t kSectors = 128;  // of a turn: several columns of most lidars
-  std::array<std::size_t, kSectors> seen{};
-  std::array<std::size_t, kSectors> last{};  // line, counted from one
+  constexpr std::size_t kMostSectors = 128;  // of a turn: several columns of most lidars
+  constexpr std::size_t kFewestSectors = 8;
+  constexpr std::size_t kEach = 2;  // returns of the longest line in each, on average
+  std::size_t longest = 0;
+  for (std::size_t m = 1; m <= lines.lines(); ++m) {
+    longest = std::max(longest, static_cast<std::size_t>(lines.begin[m] - lines.begin[m - 1]));
+  }
+  const std::size_t sectors = std::clamp(longest / kEach, kFewestSectors, kMostSectors);
+  std::array<std::size_t, kMostSectors> seen{};
+  std::array<std::size_t, kMostSectors> last{};  // line, counted from one
   for (std::size_t m = 1; m <= lines.lines(); ++m) {
     for (std::int32_t n = lines.begin[m - 1]; n < lines.begin[m]; ++n) {
       const auto i = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
       const float turns = 0.25F * pseudoAzimuth(cloud.x(i), cloud.y(i));
-      const std::size_t sector = std::min(static_cast<std::size_t>(turns * kSectors), kSectors - 1);
+      const std::size_t sector = std::min(static_cast<std::size_t>(turns * static_cast<float>(sectors)), sectors - 1);
       seen[sector] += last[sector] != m ? 1 : 0;
       last[sector] = m;
     }

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace pcl_floam {
 
@@ -36,12 +37,18 @@ struct Neighborhood {
     y[n] = cloud.y(k);
     z[n] = cloud.z(k);
   }
+
+  [[nodiscard]] Eigen::Vector3f at(std::ptrdiff_t i) const
+  {
+    const auto n = static_cast<std::size_t>(i);
+    return {x[n], y[n], z[n]};
+  }
 };
 
 /// Of a scan, the neighbours of its returns.
 class ScanNeighbors {
 public:
-  explicit ScanNeighbors(const ScanReturns& returns) : cloud_(returns.cloud), lines_(returns.lines) {}
+  ScanNeighbors(const CloudView& cloud, const ScanLines& lines) : cloud_(cloud), lines_(lines) {}
 
   /// Whether the scan lines have a point where it says.
   [[nodiscard]] bool knows(const ScanPoint& point) const
@@ -71,8 +78,8 @@ public:
     for (std::ptrdiff_t i = 0; i < Neighborhood::kPlaces; ++i) {
       neighbors.put(i, cloud_, point.index);
     }
-    const std::ptrdiff_t below = point.laser > 0 ? towards(point, point.laser - 1, below_) : kNone;
-    const std::ptrdiff_t above = point.laser + 1 < lines_.lines() ? towards(point, point.laser + 1, above_) : kNone;
+    const std::ptrdiff_t below = towards(point, nextLine(point.laser, -1), below_);
+    const std::ptrdiff_t above = towards(point, nextLine(point.laser, 1), above_);
     if (below != kNone) {
       neighbors.put(--neighbors.first, cloud_, indexAt(below));
     }
@@ -86,6 +93,23 @@ private:
   [[nodiscard]] std::int32_t indexAt(std::ptrdiff_t place) const
   {
     return lines_.index[static_cast<std::size_t>(place)];
+  }
+
+  /// The next line up or down that has returns; none beyond the last.
+  [[nodiscard]] std::ptrdiff_t nextLine(std::uint32_t line, std::ptrdiff_t step) const
+  {
+    const auto lines = static_cast<std::ptrdiff_t>(lines_.lines());
+    std::ptrdiff_t next = static_cast<std::ptrdiff_t>(line) + step;
+    while (0 <= next && next < lines && countOf(next) == 0) {
+      next += step;
+    }
+    return next < lines ? next : kNone;
+  }
+
+  [[nodiscard]] std::ptrdiff_t countOf(std::ptrdiff_t line) const
+  {
+    const auto m = static_cast<std::size_t>(line);
+    return lines_.begin[m + 1] - lines_.begin[m];
   }
 
   /// Unit, but for what is at the sensor.
@@ -111,21 +135,34 @@ private:
     std::ptrdiff_t ahead = 0;
   };
 
-  /// The place on another line: from where the last one leads, to where it is no nearer; none if that is aside.
-  [[nodiscard]] std::ptrdiff_t towards(const ScanPoint& point, std::uint32_t line, Lead& lead) const
+  /// The place on another line in a direction, to a part of the line.
+  [[nodiscard]] std::ptrdiff_t roughly(const Eigen::Vector3f& ray, std::ptrdiff_t begin, std::ptrdiff_t last) const
   {
-    const std::ptrdiff_t begin = lines_.begin[line];
-    const std::ptrdiff_t last = lines_.begin[line + 1] - 1;
-    if (last < begin) {
+    constexpr std::ptrdiff_t kParts = 32;
+    const std::ptrdiff_t stride = (last - begin) / kParts + 1;
+    std::ptrdiff_t best = begin;
+    float nearest = -std::numeric_limits<float>::infinity();
+    for (std::ptrdiff_t place = begin; place <= last; place += stride) {
+      const float near = ray.dot(rayAt(place));
+      best = near > nearest ? place : best;
+      nearest = std::max(near, nearest);
+    }
+    return best;
+  }
+
+  /// The place on another line: from where the last one leads, to where it is no nearer; none if that is aside.
+  [[nodiscard]] std::ptrdiff_t towards(const ScanPoint& point, std::ptrdiff_t line, Lead& lead) const
+  {
+    if (line == kNone) {
       return kNone;
     }
-    if (lead.of != point.laser) {  // as if both lines lacked nothing
-      const std::ptrdiff_t own = lines_.begin[point.laser];
-      lead.of = point.laser;
-      lead.ahead =
-          begin + (point.place - own) * (last + 1 - begin) / (lines_.begin[point.laser + 1] - own) - point.place;
-    }
+    const std::ptrdiff_t begin = lines_.begin[static_cast<std::size_t>(line)];
+    const std::ptrdiff_t last = begin + countOf(line) - 1;
     const Eigen::Vector3f ray(point.x, point.y, point.z);
+    if (lead.of != point.laser) {
+      lead.of = point.laser;
+      lead.ahead = roughly(ray, begin, last) - point.place;
+    }
     std::ptrdiff_t place = std::clamp(point.place + lead.ahead, begin, last);
     float nearest = ray.dot(rayAt(place));
     for (const std::ptrdiff_t step : {1, -1}) {

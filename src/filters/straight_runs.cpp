@@ -155,7 +155,7 @@ private:
 
 void findStraightRuns(const ScanReturns& returns, std::vector<ScanPoint>& points)
 {
-  ScanNeighbors neighbors(returns);
+  ScanNeighbors neighbors(returns.cloud, returns.lines);
   for (ScanPoint& point : points) {
     if (neighbors.knows(point)) {
       Eigen::Vector3f::Map(point.run.data()) = StraightRun(neighbors.along(point), kAlong).vector();

@@ -57,8 +57,8 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   if (timing.duration > 0.0 && period > 0.0) {
     sweep_fraction *= std::min(1.0, timing.duration / period);
   }
-  if (lines.valid()) {
-    isolated_.leaveOut(returnsOf(scan, parameters), lines);
+  if (lines.valid() && parameters.engine == OdometryEngine::surfaces) {
+    isolated_.leaveOut(scan, lines);
   }
 }
 

@@ -108,6 +108,9 @@ TEST(OdometryDisturbed, PointsAnywhereAreNoPose)
 /// As of rain, sunlight and other lidars: one return in twenty, which each have a place of their own.
 TEST(OdometryDisturbed, ReturnsAtAnyRangeAreNotTheScene)
 {
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
   std::mt19937 random(7);
   std::uniform_real_distribution<float> any_range(1.0F, 60.0F);
   Odometry<PointXYZIRT> odometry(defaults());

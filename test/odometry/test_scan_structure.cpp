@@ -128,6 +128,25 @@ TEST(Odometry, AScanOfFourLinesInEachDirectionIsNeverCalledTracked)
   }
 }
 
+/// Few points are not few lines.
+TEST(Odometry, AScanOfFewPointsHasItsLines)
+{
+  if (isByFeatures()) {
+    GTEST_SKIP() << "of the engine 'surfaces'";
+  }
+  std::mt19937 random(3);
+  for (const unsigned one_in : {2U, 8U, 32U}) {
+    Odometry<PointXYZIRT> odometry(defaults());
+    Cloud thinned;
+    for (const PointXYZIRT& point : sweep(steadyPath, 0)) {
+      if (random() % one_in == 0) {
+        thinned.push_back(point);
+      }
+    }
+    EXPECT_EQ(odometry.track(thinned).scan_line_failure, ScanLineFailure::none) << one_in;
+  }
+}
+
 /// Of height, roll and pitch it tells nothing, whatever fits: it is tracked only where these are kept.
 TEST(Odometry, ALidarOfASingleLayerIsTrackedOnlyInThePlane)
 {

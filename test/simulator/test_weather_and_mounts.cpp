@@ -87,6 +87,22 @@ TEST(Weather, HeavyRainDimsAsTheRadioUnionSays)
   EXPECT_EQ(Weather().transmission(100.0), 1.0);
 }
 
+/// Of beams that see nothing, too.
+TEST(Weather, StrayLightReturnsFromAnywhere)
+{
+  Weather weather;
+  weather.stray = 0.05;
+  const Sweep sweep = sweepIn(weather);
+  EXPECT_NEAR(shareOfGhosts(sweep), 0.05, 0.02);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < sweep.cloud.size(); ++i) {
+    sum += sweep.ghost[i] * static_cast<double>(sweep.cloud[i].getVector3fMap().norm());
+    count += sweep.ghost[i];
+  }
+  EXPECT_NEAR(sum / count, 50.0, 5.0);
+}
+
 TEST(Weather, DropsFlakesAndDustReturnNearTheSensor)
 {
   const Sweep clear = sweepIn({});
