@@ -4,7 +4,6 @@
 
 #include <pcl_floam/filters/scan_lines.h>
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -28,11 +27,10 @@ private:
   void keepBesideOthers(const CloudView& cloud, const ScanLines& lines);
   void takeOut(ScanLines& lines) const;
 
-  float least_reach_ = 0.0F;                 // m^2, see below
-  std::array<std::vector<float>, 3> along_;  // m, coordinates along a line, and some beyond its ends
-  std::vector<std::int32_t> is_lonely_;      // on it
+  std::vector<float> squared_range_;     // m^2, along a line, and some beyond its ends
+  std::vector<float> x_;                 // m, as these
+  std::vector<std::int32_t> is_lonely_;  // on it
   std::vector<Isolated> isolated_;
-  std::vector<float> steps_;  // m^2
 };
 
 }  // namespace pcl_floam
