@@ -21,7 +21,7 @@ struct PreparedScan {
   ScanTiming timing;
   double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
   FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
-  std::vector<ScanPoint> points;  ///< all returns, if they were asked for
+  std::vector<ScanPoint> points;  ///< all returns but isolated ones, if they were asked for
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
