@@ -16,43 +16,28 @@ constexpr std::size_t kToEachSide = 2;
 /// across the ray is not asked, since clouds are thinned, and before the sky returns are far between.
 constexpr float kSameDepth = 1.1F * 1.1F;
 
-/// What a line's returns are judged by; it goes on by \ref kToEachSide beyond both ends, with what is near nothing.
-struct LineRanges {
-  const float* squared;  // m^2
-  const float* x;        // m
-
-  /// Twins do not bear each other out: they may be one return that is told twice.
-  [[nodiscard]] inline std::int32_t areBeside(std::size_t own, std::size_t other) const
-  {
-    return static_cast<std::int32_t>(squared[other] <= kSameDepth * squared[own]) &
-           static_cast<std::int32_t>(squared[own] <= kSameDepth * squared[other]) &
-           static_cast<std::int32_t>(x[own] != x[other]);
-  }
-};
-
-/// What the next ones on both sides do not bear out.
+/// Twins do not bear each other out: they may be one return that is told twice.
+/// \param squared_range it goes on by \ref kToEachSide beyond both ends, with zeros, which are beside nothing; so does
+/// x
 PCL_FLOAM_MULTI_VERSION
-void findLonely(std::size_t count, const LineRanges& ranges, std::int32_t* is_lonely)
+void findIsolated(std::size_t count, const float* squared_range, const float* x, std::int32_t* is_isolated)
 {
-  const LineRanges at = ranges;
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t own = n + kToEachSide;
-    is_lonely[n] = 1 - (at.areBeside(own, own - 1) | at.areBeside(own, own + 1));
+    const float least = squared_range[own] / kSameDepth;
+    const float most = squared_range[own] * kSameDepth;
+    std::int32_t beside = 0;
+    for (std::size_t i = n; i <= n + 2 * kToEachSide; ++i) {
+      beside |= static_cast<std::int32_t>(squared_range[i] >= least) &
+                static_cast<std::int32_t>(squared_range[i] <= most) & static_cast<std::int32_t>(x[i] != x[own]);
+    }
+    is_isolated[n] = 1 - beside;
   }
-}
-
-bool isIsolated(std::size_t n, const LineRanges& ranges)
-{
-  std::int32_t beside = 0;
-  for (std::size_t other = n; other <= n + 2 * kToEachSide; ++other) {
-    beside |= ranges.areBeside(n + kToEachSide, other);
-  }
-  return beside == 0;
 }
 
 }  // namespace
 
-void IsolatedReturns::leaveOut(const CloudView& cloud, ScanLines& lines)
+std::size_t IsolatedReturns::leaveOut(const CloudView& cloud, ScanLines& lines)
 {
   isolated_.clear();
   isolated_.reserve(lines.index.size());
@@ -63,6 +48,7 @@ void IsolatedReturns::leaveOut(const CloudView& cloud, ScanLines& lines)
   if (!isolated_.empty()) {
     takeOut(lines);
   }
+  return isolated_.size();
 }
 
 void IsolatedReturns::findOnLine(const CloudView& cloud, const ScanLines& lines, std::size_t line)
@@ -80,11 +66,10 @@ void IsolatedReturns::findOnLine(const CloudView& cloud, const ScanLines& lines,
     x[n] = view.x(i);
     squared_range[n] = view.x(i) * view.x(i) + view.y(i) * view.y(i) + view.z(i) * view.z(i);
   }
-  is_lonely_.resize(count);
-  const LineRanges ranges{squared_range_.data(), x_.data()};
-  findLonely(count, ranges, is_lonely_.data());
+  is_isolated_.resize(count);
+  findIsolated(count, squared_range_.data(), x_.data(), is_isolated_.data());
   for (std::size_t n = 0; n < count; ++n) {
-    if (is_lonely_[n] != 0 && isIsolated(n, ranges)) {
+    if (is_isolated_[n] != 0) {
       isolated_.push_back({begin + static_cast<std::int32_t>(n), static_cast<std::uint32_t>(line)});
     }
   }

@@ -15,7 +15,8 @@ class IsolatedReturns {
 public:
   /// Takes out of a scan's lines what no neighbour bears out, on its own line or in the same direction on the next
   /// ones. Samples that are even in space would hold hardly anything else: each such return has a place of its own.
-  void leaveOut(const CloudView& cloud, ScanLines& lines);
+  /// \return how many
+  std::size_t leaveOut(const CloudView& cloud, ScanLines& lines);
 
 private:
   struct Isolated {
@@ -27,9 +28,9 @@ private:
   void keepBesideOthers(const CloudView& cloud, const ScanLines& lines);
   void takeOut(ScanLines& lines) const;
 
-  std::vector<float> squared_range_;     // m^2, along a line, and some beyond its ends
-  std::vector<float> x_;                 // m, as these
-  std::vector<std::int32_t> is_lonely_;  // on it
+  std::vector<float> squared_range_;       // m^2, along a line, and some beyond its ends
+  std::vector<float> x_;                   // m, as these
+  std::vector<std::int32_t> is_isolated_;  // on it
   std::vector<Isolated> isolated_;
 };
 

@@ -93,16 +93,15 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 
 }  // namespace
 
-std::size_t linesAbreast(const CloudView& cloud, const ScanLines& lines)
+std::size_t linesPerAzimuth(const CloudView& cloud, const ScanLines& lines)
 {
   constexpr std::size_t kMostSectors = 128;  // of a turn: several columns of most lidars
-  constexpr std::size_t kFewestSectors = 8;
-  constexpr std::size_t kEach = 2;  // returns of the longest line in each, on average
+  constexpr std::size_t kEach = 2;  // returns of the longest line in a sector, on average: few points are not few lines
   std::size_t longest = 0;
   for (std::size_t m = 1; m <= lines.lines(); ++m) {
     longest = std::max(longest, static_cast<std::size_t>(lines.begin[m] - lines.begin[m - 1]));
   }
-  const std::size_t sectors = std::clamp(longest / kEach, kFewestSectors, kMostSectors);
+  const std::size_t sectors = std::clamp(longest / kEach, std::size_t{1}, kMostSectors);
   std::array<std::size_t, kMostSectors> seen{};
   std::array<std::size_t, kMostSectors> last{};  // line, counted from one
   for (std::size_t m = 1; m <= lines.lines(); ++m) {

@@ -35,14 +35,14 @@ bool isSingleLayer(const CloudView& scan)
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
   findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
-  if (most_abreast_ < kFewestLines) {
-    most_abreast_ = std::max(most_abreast_, linesAbreast(scan, lines));
+  if (lines_per_azimuth_ < kFewestLines) {
+    lines_per_azimuth_ = std::max(lines_per_azimuth_, linesPerAzimuth(scan, lines));
   }
-  if (lines.valid() && most_abreast_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
+  if (lines.valid() && lines_per_azimuth_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
     lines = ScanLines();
     lines.failure = ScanLineFailure::too_few_lines;
   }
-  if (!lines.valid() && most_abreast_ <= 1 && isSingleLayer(scan)) {
+  if (!lines.valid() && lines_per_azimuth_ <= 1 && isSingleLayer(scan)) {
     lines.failure = ScanLineFailure::single_layer;
   }
   const auto timingBy = [&](ScanTimingSource source) {
@@ -57,8 +57,9 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
   if (timing.duration > 0.0 && period > 0.0) {
     sweep_fraction *= std::min(1.0, timing.duration / period);
   }
+  isolated_returns_ = 0;
   if (lines.valid() && parameters.engine == OdometryEngine::surfaces) {
-    isolated_.leaveOut(scan, lines);
+    isolated_returns_ = isolated_.leaveOut(scan, lines);
   }
 }
 
@@ -125,6 +126,7 @@ void PreparedScan::describeIn(OdometryReport& report) const
   report.scan_line_source = lines.source;
   report.scan_line_confidence = lines.confidence;
   report.scan_lines = lines.lines();
+  report.isolated_returns = isolated_returns_;
   report.timing_source = timing.source;
   if (timing.source == ScanTimingSource::azimuth) {
     report.timing_source = timing.clockwise ? ScanTimingSource::clockwise : ScanTimingSource::counterclockwise;

@@ -60,7 +60,7 @@ public:
     return false;
   }
 
-  [[nodiscard]] std::size_t left() const { return before.index.size() - after.index.size(); }
+  [[nodiscard]] std::size_t leftOut() const { return before.index.size() - after.index.size(); }
 
   ScanLines before;
   ScanLines after;
@@ -76,7 +76,7 @@ TEST(IsolatedReturns, AreThoseInFrontOfAWallAndBehindIt)
 {
   for (const double range : {0.5, 3.0, 8.9, 11.2, 60.0}) {
     const ThreeLines lines([range](int ring, int column) { return ring == 1 && column == 20 ? range : kWall; });
-    EXPECT_EQ(lines.left(), 1) << range;
+    EXPECT_EQ(lines.leftOut(), 1) << range;
     EXPECT_FALSE(lines.has(1, 20)) << range;
   }
 }
@@ -87,7 +87,7 @@ TEST(IsolatedReturns, AreTakenOutOfTheirLines)
   const auto is_stray = [](int ring, int column) { return (column + 7 * ring) % 200 == 0; };
   const ThreeLines lines([&](int ring, int column) { return is_stray(ring, column) ? 3.0 + 5.0 * ring : kWall; });
   ASSERT_EQ(lines.after.lines(), ThreeLines::kRings);
-  EXPECT_EQ(lines.left(), 3 + 2 + 2);
+  EXPECT_EQ(lines.leftOut(), 3 + 2 + 2);
   EXPECT_EQ(lines.after.begin.back(), static_cast<std::int32_t>(lines.after.index.size()));
   for (int ring = 0; ring < ThreeLines::kRings; ++ring) {
     for (int column = 0; column < ThreeLines::kColumns; ++column) {
@@ -102,17 +102,17 @@ TEST(IsolatedReturns, AreTakenOutOfTheirLines)
 TEST(IsolatedReturns, AreNotThoseOfAThinPost)
 {
   const auto post = [](int, int column) { return column == 20 ? 4.0 : kWall; };
-  EXPECT_EQ(ThreeLines(post).left(), 0);
+  EXPECT_EQ(ThreeLines(post).leftOut(), 0);
   // Two upper lines that see little but the sky: the ground ahead, and a post.
   const auto before_the_sky = [](int ring, int column) {
     const double hill = column < 6 ? 30.0 : kMissing;
     return ring == 0 ? 20.0 : column == 20 ? 76.0 : hill;
   };
-  EXPECT_EQ(ThreeLines(before_the_sky).left(), 0);
+  EXPECT_EQ(ThreeLines(before_the_sky).leftOut(), 0);
   const auto no_post = [&](int ring, int column) {
     return column == 20 && ring == 2 ? kMissing : before_the_sky(ring, column);
   };
-  EXPECT_EQ(ThreeLines(no_post).left(), 1);
+  EXPECT_EQ(ThreeLines(no_post).leftOut(), 1);
 }
 
 /// Told twice, as by a driver of two returns a ray where there was one.
@@ -136,28 +136,28 @@ TEST(IsolatedReturns, DoNotBearThemselvesOut)
   EXPECT_EQ(lines.index.size(), 78);
 }
 
-/// Some metres apart, as a coarse grid leaves them.
+/// More than a metre apart at 10 m, as a coarse grid leaves them: how far neighbours are to the side is not asked.
 TEST(IsolatedReturns, AreNotThoseOfACloudThatWasThinned)
 {
-  EXPECT_EQ(ThreeLines([](int, int column) { return column % 40 == 0 ? kWall : kMissing; }).left(), 0);
+  EXPECT_EQ(ThreeLines([](int, int column) { return column % 40 == 0 ? kWall : kMissing; }).leftOut(), 0);
 }
 
 /// A ring that lies alone on the ground, whose next ones are far away.
 TEST(IsolatedReturns, AreNotThoseOfTheGround)
 {
-  EXPECT_EQ(ThreeLines([](int ring, int) { return 10.0 * std::pow(3.0, ring); }).left(), 0);
+  EXPECT_EQ(ThreeLines([](int ring, int) { return 10.0 * std::pow(3.0, ring); }).leftOut(), 0);
 }
 
 /// Leaves, a cable and the wall behind, by turns.
 TEST(IsolatedReturns, AreNotThoseOfRaysWithTwoReturns)
 {
-  EXPECT_EQ(ThreeLines([](int, int column) { return column % 2 == 0 && column < 100 ? 5.0 : kWall; }).left(), 0);
+  EXPECT_EQ(ThreeLines([](int, int column) { return column % 2 == 0 && column < 100 ? 5.0 : kWall; }).leftOut(), 0);
 }
 
 TEST(IsolatedReturns, AreNotThoseOfAWallSeenUnderAFlatAngle)
 {
   const auto wall = [](int, int column) { return 1.0 / std::tan((3.0 + 0.1 * column) * kPi / 180.0); };
-  EXPECT_EQ(ThreeLines(wall).left(), 0);
+  EXPECT_EQ(ThreeLines(wall).leftOut(), 0);
 }
 
 }  // namespace

@@ -123,6 +123,7 @@ TEST(OdometryDisturbed, ReturnsAtAnyRangeAreNotTheScene)
     }
     const OdometryReport& report = odometry.track(scan);
     EXPECT_TRUE(k == 0 || report.state == TrackingState::tracked) << "scan " << k << report.reason;
+    EXPECT_GT(report.isolated_returns, scan.size() / 30) << "most of them";
     EXPECT_LT(error(report.world_T_sensor, steadyPath, k), 0.05) << "scan " << k;
   }
 }

@@ -76,7 +76,8 @@ TEST(UndecidedStarts, AreNotDecidedByAConvoy)
     report = scans.next();
     EXPECT_TRUE(report.state != TrackingState::tracked || report.provisional || scans.motionError() < 0.5) << number;
   }
-  EXPECT_LT(scans.motionError(), 0.5);
+  EXPECT_EQ(report.state, TrackingState::tracked) << report.reason;
+  EXPECT_FALSE(report.provisional);
 }
 
 /// Once one is left the poses before are corrected.

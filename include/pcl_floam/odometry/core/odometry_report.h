@@ -86,6 +86,8 @@ struct OdometryReport {
   ScanLineSource scan_line_source = ScanLineSource::automatic;
   float scan_line_confidence = 0.0F;
   std::size_t scan_lines = 0;  ///< 0: it was worked from space
+  /// Left out, since no other one lies beside them, as those of stray light: of scan lines, by surfaces.
+  std::size_t isolated_returns = 0;
   /// Where nothing tells which way the head turned, it is clockwise, counterclockwise or none, whichever explains the
   /// scans better (by surfaces).
   ScanTimingSource timing_source = ScanTimingSource::none;
