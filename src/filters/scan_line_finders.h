@@ -45,10 +45,6 @@ bool linesFromElevationTable(const CloudView& cloud, const SensorModel& sensor, 
 bool linesFromElevationClusters(const CloudView& cloud, const SensorModel& sensor, int threads, LineGrouping& grouping,
                                 ScanLines& lines);
 
-/// How many scan lines see the same azimuth, the median: a scan that was thinned in the order of its file may have all
-/// lines somewhere, and few in each direction. 0 without lines.
-[[nodiscard]] std::size_t linesPerAzimuth(const CloudView& cloud, const ScanLines& lines);
-
 /// Whether the scan shows more than half a turn. What sees less need not turn at all, as a flash lidar.
 bool goesRound(const CloudView& cloud, const ScanLines& lines);
 

@@ -1,12 +1,9 @@
 #include <pcl_floam/filters/scan_lines.h>
 
-#include "common/median.h"
-#include "filters/azimuth.h"
 #include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace pcl_floam {
@@ -32,7 +29,6 @@ const char* toString(ScanLineFailure failure)
     case ScanLineFailure::source_not_available: return "the cloud lacks what the chosen source of scan lines needs";
     case ScanLineFailure::no_line_structure: return "no scan-line structure was found";
     case ScanLineFailure::not_looked_for: return "scan lines were not looked for";
-    case ScanLineFailure::too_few_lines: return "the scan lines are too few to bear each other out";
     case ScanLineFailure::single_layer: return "the scan is a single layer";
   }
   return "unknown";
@@ -92,30 +88,6 @@ bool runAlongTheAzimuth(const CloudView& cloud, const ScanLines& lines)
 }
 
 }  // namespace
-
-std::size_t linesPerAzimuth(const CloudView& cloud, const ScanLines& lines)
-{
-  constexpr std::size_t kMostSectors = 128;  // of a turn: several columns of most lidars
-  constexpr std::size_t kEach = 2;  // returns of the longest line in a sector, on average: few points are not few lines
-  std::size_t longest = 0;
-  for (std::size_t m = 1; m <= lines.lines(); ++m) {
-    longest = std::max(longest, static_cast<std::size_t>(lines.begin[m] - lines.begin[m - 1]));
-  }
-  const std::size_t sectors = std::clamp(longest / kEach, std::size_t{1}, kMostSectors);
-  std::array<std::size_t, kMostSectors> seen{};
-  std::array<std::size_t, kMostSectors> last{};  // line, counted from one
-  for (std::size_t m = 1; m <= lines.lines(); ++m) {
-    for (std::int32_t n = lines.begin[m - 1]; n < lines.begin[m]; ++n) {
-      const auto i = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
-      const float turns = 0.25F * pseudoAzimuth(cloud.x(i), cloud.y(i));
-      const std::size_t sector = std::min(static_cast<std::size_t>(turns * static_cast<float>(sectors)), sectors - 1);
-      seen[sector] += last[sector] != m ? 1 : 0;
-      last[sector] = m;
-    }
-  }
-  const auto none = std::remove(seen.begin(), seen.end(), std::size_t{0});
-  return medianOf(seen.begin(), none);
-}
 
 void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSource source, ScanLines& lines,
                    int threads)

@@ -26,9 +26,6 @@ const char* reasonToDoubt(const Tracker& tracker, ScanLineFailure failure, doubl
   if (explained < kMostOfTheScan && !tracker.isOpen()) {
     return "the map has no surface for most of the scan: the pose may be wrong";
   }
-  if (failure == ScanLineFailure::too_few_lines) {
-    return "the scan lines are too few to bear each other out: their own pattern may hold the pose";
-  }
   if (failure == ScanLineFailure::single_layer && !keepsLevel(locked)) {
     return "the scan is a single layer: height, roll and pitch may be wrong";
   }

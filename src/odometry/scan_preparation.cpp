@@ -12,10 +12,6 @@ namespace pcl_floam {
 
 namespace {
 
-/// A surface of a map is borne out by two or three lasers. Where there are not many more, hardly any is, and parts
-/// of the sweep are taken for lasers.
-constexpr std::size_t kFewestLines = 5;
-
 /// Whether all points lie in one plane.
 bool isSingleLayer(const CloudView& scan)
 {
@@ -35,14 +31,8 @@ bool isSingleLayer(const CloudView& scan)
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
   findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
-  if (lines_per_azimuth_ < kFewestLines) {
-    lines_per_azimuth_ = std::max(lines_per_azimuth_, linesPerAzimuth(scan, lines));
-  }
-  if (lines.valid() && lines_per_azimuth_ < kFewestLines && parameters.engine == OdometryEngine::surfaces) {
+  if (lines.lines() < 2 && isSingleLayer(scan)) {
     lines = ScanLines();
-    lines.failure = ScanLineFailure::too_few_lines;
-  }
-  if (!lines.valid() && lines_per_azimuth_ <= 1 && isSingleLayer(scan)) {
     lines.failure = ScanLineFailure::single_layer;
   }
   const auto timingBy = [&](ScanTimingSource source) {

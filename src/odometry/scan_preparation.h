@@ -40,9 +40,8 @@ struct PreparedScan {
   void describeIn(OdometryReport& report) const;
 
 private:
-  bool turns_ = false;                 ///< as an earlier scan showed
-  std::size_t lines_per_azimuth_ = 0;  ///< at most, of the scans so far
-  std::size_t isolated_returns_ = 0;   ///< that were left out
+  bool turns_ = false;                ///< as an earlier scan showed
+  std::size_t isolated_returns_ = 0;  ///< that were left out
   LineGrouping grouping_;
   IsolatedReturns isolated_;
   std::vector<FeatureSelection> selections_;

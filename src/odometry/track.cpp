@@ -167,6 +167,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
   problem.threads = settings_.threads;
+  problem.spacing = settings_.side;
   problem.room = &room_;
   return problem;
 }

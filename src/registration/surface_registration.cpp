@@ -1,9 +1,11 @@
 #include "registration/surface_registration.h"
 
+#include "registration/held_information.h"
 #include "registration/locked_motions.h"
 #include "registration/net_information.h"
 #include "registration/surface_evidence.h"
 #include "registration/surface_residuals.h"
+#include "registration/sweep_estimate.h"
 
 #include <Eigen/Cholesky>
 
@@ -26,7 +28,7 @@ constexpr int kFewest = 20;
 /// A step that ends the iterations, in standard deviations of the pose by what counts as independent residuals.
 constexpr double kSmallStep = 0.3;
 
-/// What many residuals count as one beside what was known before: neighbours share the errors of the map.
+/// As many residuals count as one beside what was known before: neighbours share the errors of the map.
 constexpr double kResidualsBesideMotion = 3.0;
 
 /// m^2, of where the guess has the points. Rivals look farther than their guesses may be off as it is.
@@ -44,11 +46,12 @@ public:
         of_prior_(problem.prior.information()),
         prior_(of_prior_),
         doubt_(squaredDoubt(problem)),
+        first_stride_(problem.scan.points->size() < kManyPoints ? 1 : kFirstStride),
+        placing_(problem.prior, problem.placement),
         room_(problem.room != nullptr ? *problem.room : own_room_)
   {
     const SweepPrior::State begin = problem.prior.movedBy(problem.begins_off);
-    pose_ = begin.pose;
-    velocity_ = begin.velocity;
+    at_ = {begin.pose, begin.velocity};
     room_.edges.assign(problem.edges.points != nullptr ? problem.edges.points->size() : 0, FoundSurface());
   }
 
@@ -65,7 +68,7 @@ public:
 private:
   void weighEvidence(SurfaceRegistration& result)
   {
-    const SurfaceEvidence evidence{trajectory(), problem_.threads};
+    const SurfaceEvidence evidence{placing_.trajectory(at_), problem_.threads};
     const bool is_of_points = problem_.evidence == Evidence::of_points;
     result.evidence =
         evidence.of(problem_.scan, problem_.edges, room_.edges, is_of_points ? &result.point_evidence : nullptr);
@@ -78,8 +81,8 @@ private:
     double look = 1.0;  // halved with each
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
-      const bool all = problem_.scan.points->size() < kManyPoints || i >= kMostFirst || (narrow && i >= kLeastFirst);
-      sums = told(accumulate(look, all ? 1 : kFirstStride));
+      const bool all = first_stride_ == 1 || i >= kMostFirst || (narrow && i >= kLeastFirst);
+      sums = told(sumsAt(at_, look * look * problem_.guess_covariance, all ? 1 : first_stride_));
       report.iterations = i + 1;
       const Vector12 step = sums.equations.count() < kFewest ? Vector12(Vector12::Zero()) : stepOf(sums);
       if (sums.equations.count() < kFewest) {
@@ -97,12 +100,8 @@ private:
   /// \return whether it was a small step
   bool take(const Vector12& step, const SurfaceSums& sums)
   {
+    at_.take(step);
     const Vector6 motion = step.head<6>();
-    const Eigen::Matrix3d back = pose_.rotation.transpose();
-    velocity_.head<3>() += back * step.segment<3>(6);
-    velocity_.tail<3>() += back * step.segment<3>(9);
-    pose_.translation += motion.head<3>();
-    pose_.rotation = nearestRotation(expSO3(motion.tail<3>()) * pose_.rotation);
     const Vector6 seen = sums.equations.information * motion;
     return motion.dot(seen) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
   }
@@ -113,22 +112,24 @@ private:
     if (report.hasConverged()) {
       report.weak_directions = weak_;
     }
-    report.target_T_source = report.hasConverged() ? pose_ : problem_.prior.pose;
-    report.sweep_twist = twist();
-    report.sweep_acceleration = acceleration();
+    report.target_T_source = report.hasConverged() ? at_.pose : problem_.prior.pose;
+    report.sweep_twist = placing_.twist(at_);
+    report.sweep_acceleration = placing_.acceleration(at_);
     report.edge_correspondences = sums.equations.edges;
     report.plane_correspondences = sums.equations.planes;
     report.point_correspondences = sums.equations.points;
     report.plane_inliers = sums.equations.plane_inliers;
     report.information = propagated(strong_.transpose(), sums.equations.information);
-    const Matrix6 net = propagated(strong_.transpose(), net_);
-    result.told = covarianceBy(net / kResidualsBesideMotion + besides().information);
+    const HeldInformation held = this->held(report.hasConverged());
+    const Matrix6 besides = this->besides().information;
+    result.told = covarianceBy(held.information + besides);
+    nameWhatIsNotHeld(held, besides, commonUnits(sums.equations), report.weak_directions);
     report.cost = sums.equations.cost;
     report.residual_rms =
         sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;
     result.posterior = posterior();
     report.covariance = result.posterior.topLeftCorner<6, 6>();
-    result.velocity = velocity_;
+    result.velocity = at_.velocity;
     result.points =
         problem_.scan.points->size() + (problem_.edges.points != nullptr ? problem_.edges.points->size() : 0);
   }
@@ -136,7 +137,7 @@ private:
   /// What else is known of the pose.
   [[nodiscard]] PoseEquations besides() const
   {
-    return problem_.factors != nullptr ? problem_.factors->at(pose_) : PoseEquations();
+    return problem_.factors != nullptr ? problem_.factors->at(at_.pose) : PoseEquations();
   }
 
   /// As residuals would tell of it: by factors, and, as well as all residuals together, of what is locked.
@@ -190,36 +191,37 @@ private:
     return told;
   }
 
-  [[nodiscard]] Vector6 twist() const { return problem_.prior.fraction * placingVelocity(); }
-
-  [[nodiscard]] Vector6 placingVelocity() const
+  /// \param uncertainty of the pose
+  [[nodiscard]] SweepSums sumsAt(const SweepEstimate& at, const Matrix6& uncertainty, std::size_t stride)
   {
-    return problem_.placement == SweepPlacement::held ? problem_.prior.velocity : velocity_;
-  }
-
-  /// Over the sweep, from how the velocity has changed since the last one.
-  [[nodiscard]] Vector6 acceleration() const
-  {
-    const SweepPrior& prior = problem_.prior;
-    return prior.periods_between > 0.0 ? Vector6(prior.fraction * prior.fraction / prior.periods_between *
-                                                 (placingVelocity() - prior.velocity_before))
-                                       : Vector6(Vector6::Zero());
-  }
-
-  [[nodiscard]] SweepTrajectory trajectory() const
-  {
-    return SweepTrajectory(pose_, twist(), SweepTrajectory::kMiddle, acceleration());
-  }
-
-  [[nodiscard]] SweepSums accumulate(double look, std::size_t stride)
-  {
-    SurfaceResiduals residuals{trajectory()};
-    residuals.pose_uncertainty = look * look * problem_.guess_covariance;
+    SurfaceResiduals residuals{placing_.trajectory(at)};
+    residuals.pose_uncertainty = uncertainty;
     residuals.pose_uncertainty.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.threads = problem_.threads;
     const std::size_t edge_stride = problem_.is_rival ? 1 : stride;  // between motions, few edges tell
     return residuals.sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
+  }
+
+  /// Of independent residuals, as far as they hold the pose.
+  [[nodiscard]] HeldInformation held(bool is_tried)
+  {
+    constexpr double kHalf = 0.5;  // of the points' spacing
+    const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
+    if (!is_tried || problem_.is_rival || !(problem_.spacing > 0.0)) {
+      return {information, {}};
+    }
+    return heldInformation(information, problem_.locked, kHalf * problem_.spacing,
+                           [this](const Vector6& motion, double way) { return pullAlong(motion, way); });
+  }
+
+  [[nodiscard]] Pull pullAlong(const Vector6& motion, double way)
+  {
+    SweepEstimate moved = at_;
+    moved.move(way * motion);
+    const Matrix6 uncertainty = way * way * motion * motion.transpose();
+    const NormalEquations there = sumsAt(moved, uncertainty, first_stride_).total().equations;
+    return {motion.dot(there.gradient), motion.dot(there.information * motion)};
   }
 
   struct Equations {
@@ -231,7 +233,7 @@ private:
   [[nodiscard]] Equations equationsOf(const NormalEquations& e) const
   {
     const auto cleaned = [&](const Matrix6& m) { return propagated(strong_.transpose(), m); };
-    const Vector12 off = problem_.prior.offset(pose_, velocity_);
+    const Vector12 off = problem_.prior.offset(at_.pose, at_.velocity);
     Equations equations;
     equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
         cleaned(e.twist_information);
@@ -257,11 +259,12 @@ private:
   }
 
   const SurfaceProblem& problem_;
-  SE3 pose_;
-  Vector6 velocity_;  // per period, in the sensor's axes
+  SweepEstimate at_;
   const Matrix12 of_prior_;
   Matrix12 prior_;  // apart from what is not told
   double doubt_;    // m^2, of the guess
+  std::size_t first_stride_;
+  SweepPlacing placing_;
   SurfaceRoom own_room_;
   SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration

@@ -1,5 +1,7 @@
 #include "registration/weak_directions.h"
 
+#include "registration/pull_growth.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -77,9 +79,10 @@ double WeakDirections::share(const InformationAnalysis& analysis, int direction)
 {
   const Vector6 motion = analysis.motion(direction);
   const double way = level_.spacing();
-  const double growth = (pull(motion, way) - pull(motion, -way)) / (2.0 * way);
-  const double share = std::min(1.0, growth / analysis.stiffness(direction));
-  const double deviation = std::sqrt(alignment_.sums().residualVariance() / analysis.stiffness(direction));
+  const double stiffness = analysis.stiffness(direction);
+  const double share =
+      std::min(1.0, shareOfGrowth({pull(motion, -way), stiffness}, {pull(motion, way), stiffness}, way));
+  const double deviation = std::sqrt(alignment_.sums().residualVariance() / stiffness);
   return share > 0.0 && kCertain * deviation < share * way ? share : 0.0;
 }
 

@@ -29,9 +29,6 @@ enum class ScanLineFailure : std::uint8_t {
   source_not_available,
   no_line_structure,
   not_looked_for,  ///< the sensor has none (\ref SensorModel::has_scan_lines)
-  /// That see the same direction, fewer than five, for one line to bear out what another one sees; of an odometry by
-  /// surfaces, whose poses the lines' own pattern may hold then: they are doubtful.
-  too_few_lines,
   /// All points lie in one plane, as those of a 2-D lidar do: of an odometry by surfaces, whose poses are doubtful then
   /// unless height, roll and pitch are locked.
   single_layer
