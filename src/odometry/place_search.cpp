@@ -86,10 +86,12 @@ SurfaceRegistration registerAround(SurfaceProblem expected, double side)
     return best;
   }
   for (const double sign : {1.0, -1.0}) {
-    expected.begins_off = sign * doubt.perturbation;
-    SurfaceRegistration found = registerSurfaces(expected);
-    if (likelihood(found) > likelihood(best) + kOfOneMotion) {
-      best = std::move(found);
+    SurfaceProblem aside = expected;
+    aside.begins_off = sign * doubt.perturbation;
+    aside.spacing = 0.0;
+    if (likelihood(registerSurfaces(aside)) > likelihood(best) + kOfOneMotion) {
+      aside.spacing = expected.spacing;  // it is asked what holds the pose where that is taken
+      best = registerSurfaces(aside);
     }
   }
   return best;
@@ -122,6 +124,7 @@ std::optional<SE3> betterPlace(const SurfaceProblem& expected, double side, cons
 {
   SurfaceProblem weighed = expected;
   weighed.evidence = Evidence::total;
+  weighed.spacing = 0.0;
   SurfaceRegistration best = registerAround(weighed, side);
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {

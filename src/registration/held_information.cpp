@@ -10,11 +10,11 @@ namespace pcl_floam {
 namespace {
 
 /// One standard deviation, m: what is told of so well is told of by more places than any pattern reaches.
-constexpr double kWellKnown = 0.003;
+constexpr double kWellKnown = 0.004;
 /// Nor is there anything to try where next to nothing is told.
 constexpr double kUnknown = 1.0;
 /// What holds a pose pulls by half of what it promises and more, also amid traffic; patterns by less than a fifth.
-constexpr double kHolds = 0.3;
+constexpr double kHolds = 1.0 / 3.0;
 
 }  // namespace
 
@@ -33,7 +33,7 @@ HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreed
     }
     // Of all motions by a metre along this axis, that which the residuals tell least of.
     const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
-    if (shareOfGrowth(pull_along(motion, -way), pull_along(motion, way), way) < kHolds) {
+    if (!(shareOfGrowth(pull_along(motion, -way), pull_along(motion, way), way) >= kHolds)) {  // nor if nothing pulls
       const Vector6 told = held.information * motion;
       const double along = motion.dot(told);
       if (along > 0.0) {

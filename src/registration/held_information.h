@@ -21,7 +21,7 @@ struct HeldInformation {
 /// A sensor's rings lie on the rings that it has drawn into the map, and hold the pose where it was, each with a small
 /// and definite error. So the pose is moved along the directions of which is known least.
 /// \param information of independent residuals; motions translate (m) before they turn (rad)
-/// \param way         m: half of what the scan's points lie apart
+/// \param way         m: by a part of what the scan's points lie apart
 /// \param pull_along  of the residuals when the pose has gone some way along a motion
 [[nodiscard]] HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
                                               const std::function<Pull(const Vector6& motion, double way)>& pull_along);

@@ -82,7 +82,7 @@ private:
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
       const bool all = first_stride_ == 1 || i >= kMostFirst || (narrow && i >= kLeastFirst);
-      sums = told(sumsAt(at_, look * look * problem_.guess_covariance, all ? 1 : first_stride_));
+      sums = told(sumsAt(look, all ? 1 : first_stride_));
       report.iterations = i + 1;
       const Vector12 step = sums.equations.count() < kFewest ? Vector12(Vector12::Zero()) : stepOf(sums);
       if (sums.equations.count() < kFewest) {
@@ -192,26 +192,32 @@ private:
   }
 
   /// \param uncertainty of the pose
-  [[nodiscard]] SweepSums sumsAt(const SweepEstimate& at, const Matrix6& uncertainty, std::size_t stride)
+  [[nodiscard]] SurfaceResiduals residualsAt(const SweepEstimate& at, const Matrix6& uncertainty) const
   {
     SurfaceResiduals residuals{placing_.trajectory(at)};
     residuals.pose_uncertainty = uncertainty;
     residuals.pose_uncertainty.topLeftCorner<3, 3>().diagonal().array() += kLeastDoubt * kLeastDoubt;
     residuals.periods = problem_.placement == SweepPlacement::joint ? problem_.prior.fraction : 0.0;
     residuals.threads = problem_.threads;
+    return residuals;
+  }
+
+  [[nodiscard]] SweepSums sumsAt(double look, std::size_t stride)
+  {
     const std::size_t edge_stride = problem_.is_rival ? 1 : stride;  // between motions, few edges tell
-    return residuals.sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
+    return residualsAt(at_, look * look * problem_.guess_covariance)
+        .sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
   }
 
   /// Of independent residuals, as far as they hold the pose.
   [[nodiscard]] HeldInformation held(bool is_tried)
   {
-    constexpr double kHalf = 0.5;  // of the points' spacing
+    constexpr double kWay = 0.25;  // of the points' spacing
     const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
     if (!is_tried || problem_.is_rival || !(problem_.spacing > 0.0)) {
       return {information, {}};
     }
-    return heldInformation(information, problem_.locked, kHalf * problem_.spacing,
+    return heldInformation(information, problem_.locked, kWay * problem_.spacing,
                            [this](const Vector6& motion, double way) { return pullAlong(motion, way); });
   }
 
@@ -220,8 +226,7 @@ private:
     SweepEstimate moved = at_;
     moved.move(way * motion);
     const Matrix6 uncertainty = way * way * motion * motion.transpose();
-    const NormalEquations there = sumsAt(moved, uncertainty, first_stride_).total().equations;
-    return {motion.dot(there.gradient), motion.dot(there.information * motion)};
+    return residualsAt(moved, uncertainty).pullAlong(motion, problem_.scan, first_stride_, problem_.edges, room_);
   }
 
   struct Equations {

@@ -37,6 +37,58 @@ Vector6 derivativeAlong(const Eigen::Vector3d& normal, const PlacedPoint& point)
   return derivative;
 }
 
+/// What the residuals of some points come to.
+struct ChunkRows {
+  ResidualRows measured;
+  ResidualRows nearest;
+  ResidualRows noise;  // what normals and lines' directions that are off add to H
+
+  void add(const Vector6& derivative, double residual, double weight, double since_middle)
+  {
+    measured.add(derivative, residual, weight, since_middle);
+  }
+  void addNearest(const Eigen::Matrix3d& observed, const Eigen::Vector3d& off, const PlacedPoint& p, double weight,
+                  double since_middle)
+  {
+    nearest.add(observed, off, p.arm, weight, since_middle);
+  }
+  void addNoise(const Eigen::Vector3d& normal, const PlacedPoint& p, double weight)
+  {
+    noise.add(derivativeAlong(normal, p), 0.0, weight, 0.0);
+  }
+
+  void addTo(SurfaceSums& sums)
+  {
+    nearest.addTo(sums.equations);
+    NormalEquations by_noise;
+    noise.addTo(by_noise);
+    sums.equations.noise_information = by_noise.information + kNearestByChance * sums.equations.information;
+    measured.addTo(sums.equations);
+  }
+};
+
+/// The same along one motion.
+struct ChunkPull {
+  const Vector6& motion;
+  Pull pull;
+
+  void add(const Vector6& derivative, double residual, double weight, double /*since_middle*/)
+  {
+    const double along = derivative.dot(motion);
+    pull.against += weight * along * residual;
+    pull.stiffness += weight * along * along;
+  }
+  void addNearest(const Eigen::Matrix3d& observed, const Eigen::Vector3d& off, const PlacedPoint& p, double weight,
+                  double /*since_middle*/)
+  {
+    const Eigen::Vector3d moved = motion.head<3>() + Eigen::Vector3d(motion.tail<3>()).cross(p.arm);
+    const Eigen::Vector3d seen = observed * moved;
+    pull.against += weight * seen.dot(off);
+    pull.stiffness += weight * seen.dot(moved);
+  }
+  void addNoise(const Eigen::Vector3d& /*normal*/, const PlacedPoint& /*p*/, double /*weight*/) {}
+};
+
 template <typename Iterator>
 SurfaceSums totalOf(Iterator begin, Iterator end)
 {
@@ -53,44 +105,68 @@ void SurfaceSums::add(const SurfaceSums& other)
   robust_weight += other.robust_weight;
 }
 
+/// \param chunk takes the number of a chunk and its points; it may write what is of that number alone
+template <typename Chunk>
+void SurfaceResiduals::forEachChunk(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
+                                    std::size_t edge_stride, SurfaceRoom& room, const Chunk& chunk) const
+{
+  const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
+  const auto chunks = static_cast<std::ptrdiff_t>(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
+#pragma omp parallel for num_threads(threads) schedule(dynamic)
+  for (std::ptrdiff_t part = 0; part < chunks; ++part) {
+    const auto c = static_cast<std::size_t>(part);
+    chunk(c, c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
+                         : PlacedPoints(sensor, edges, c - of_scan, edge_stride, room.edges.data()));
+  }
+}
+
 SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                    std::size_t edge_stride, SurfaceRoom& room) const
 {
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
   parts.resize(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
-    const auto c = static_cast<std::size_t>(part);
-    parts[c] = chunkOf(c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
-                                   : PlacedPoints(sensor, edges, c - of_scan, edge_stride, room.edges.data()));
-  }
+  forEachChunk(scan, stride, edges, edge_stride, room, [&](std::size_t c, const PlacedPoints& placed) {
+    parts[c] = SurfaceSums();
+    ChunkRows rows;
+    addAll(placed, rows, parts[c]);
+    rows.addTo(parts[c]);
+  });
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
-SurfaceSums SurfaceResiduals::chunkOf(const PlacedPoints& placed) const
+Pull SurfaceResiduals::pullAlong(const Vector6& motion, const SurfaceTerm& scan, std::size_t stride,
+                                 const SurfaceTerm& edges, SurfaceRoom& room) const
 {
-  SurfaceSums sums;
-  ResidualRows rows;
-  ResidualRows nearest;
-  ResidualRows noise;  // what normals and lines' directions that are off add to H
+  room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, 1));
+  forEachChunk(scan, stride, edges, 1, room, [&](std::size_t c, const PlacedPoints& placed) {
+    ChunkPull rows{motion, {}};
+    SurfaceSums unused;
+    addAll(placed, rows, unused);
+    room.pulls[c] = rows.pull;
+  });
+  Pull total;
+  for (const Pull& pull : room.pulls) {
+    total.against += pull.against;
+    total.stiffness += pull.stiffness;
+  }
+  return total;
+}
+
+template <typename Rows>
+void SurfaceResiduals::addAll(const PlacedPoints& placed, Rows& rows, SurfaceSums& sums) const
+{
   for (std::size_t i = 0; i < placed.count; ++i) {
     const PlacedPoint& point = placed.points[i];
     const Surface& surface = placed.surfaces[i];
     switch (surface.kind) {
-      case SurfaceKind::plane: addPlane(point, surface, rows, noise, sums); break;
-      case SurfaceKind::line: addLine(point, surface, rows, noise, sums); break;
-      case SurfaceKind::point: addPoint(point, surface, nearest, sums); break;
+      case SurfaceKind::plane: addPlane(point, surface, rows, sums); break;
+      case SurfaceKind::line: addLine(point, surface, rows, sums); break;
+      case SurfaceKind::point: addPoint(point, surface, rows, sums); break;
       case SurfaceKind::unknown: break;
     }
   }
-  nearest.addTo(sums.equations);
-  NormalEquations by_noise;
-  noise.addTo(by_noise);
-  sums.equations.noise_information = by_noise.information + kNearestByChance * sums.equations.information;
-  rows.addTo(sums.equations);
-  return sums;
 }
 
 /// Into the target's axes.
@@ -100,8 +176,8 @@ Eigen::Vector3d SurfaceResiduals::turned(const std::array<float, 3>& run) const
 }
 
 /// Eq. 7, and Eq. 14 with the plane's normal.
-void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
-                                SurfaceSums& sums) const
+template <typename Rows>
+void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Rows& rows, SurfaceSums& sums) const
 {
   const double r = plane.direction.dot(p.place - plane.center);
   const double extent = std::max(plane.extent, kNoExtent);
@@ -112,14 +188,14 @@ void SurfaceResiduals::addPlane(const PlacedPoint& p, const Surface& plane, Resi
   const double by_noise = w * (plane.thickness + 3.0 * kRangeNoise * kRangeNoise / plane.count) / plane.count;
   const bool is_wide = plane.width > 0.0;
   const Eigen::Vector3d wide = is_wide ? plane.wide : Eigen::Vector3d(plane.direction.unitOrthogonal());
-  noise.add(derivativeAlong(wide, p), 0.0, by_noise / (is_wide ? plane.width : extent), 0.0);
-  noise.add(derivativeAlong(plane.direction.cross(wide), p), 0.0, by_noise / extent, 0.0);
+  rows.addNoise(wide, p, by_noise / (is_wide ? plane.width : extent));
+  rows.addNoise(plane.direction.cross(wide), p, by_noise / extent);
   ++sums.equations.planes;
 }
 
 /// Eq. 5 and 13: the distance across the line, in two directions.
-void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, ResidualRows& rows, ResidualRows& noise,
-                               SurfaceSums& sums) const
+template <typename Rows>
+void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Rows& rows, SurfaceSums& sums) const
 {
   const double variance = varianceFrom(line);
   const Eigen::Vector3d from_center = p.place - line.center;
@@ -148,13 +224,14 @@ void SurfaceResiduals::addLine(const PlacedPoint& p, const Surface& line, Residu
   const double tilt = 2.0 * by_noise / std::max(line.extent, kNoExtent);
   for (const Eigen::Vector3d& axis :
        {Eigen::Vector3d(line.direction), other, Eigen::Vector3d(other.cross(line.direction))}) {
-    noise.add(derivativeAlong(axis, p), 0.0, tilt, 0.0);
+    rows.addNoise(axis, p, tilt);
   }
   ++sums.equations.edges;
 }
 
 /// The distance to the nearest point, as far as it can be observed.
-void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const
+template <typename Rows>
+void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Rows& rows, SurfaceSums& sums) const
 {
   const double variance = varianceFrom(near);
   const Eigen::Vector3d off = p.place - near.center;
@@ -172,7 +249,7 @@ void SurfaceResiduals::addPoint(const PlacedPoint& p, const Surface& near, Resid
   const Eigen::Vector3d direction = length > 0.0 ? Eigen::Vector3d(seen / length) : Eigen::Vector3d::Zero();
   const double w = weight(length * length, variance, derivativeAlong(direction, p), p, sums);
   ++sums.equations.points;
-  rows.add(observed, off, p.arm, w, periods * p.since_middle);
+  rows.addNearest(observed, off, p, w, periods * p.since_middle);
 }
 
 /// The kernel is as wide as the residual may be off with the pose.

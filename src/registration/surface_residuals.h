@@ -4,14 +4,13 @@
 
 #include "registration/normal_equations.h"
 #include "registration/placed_points.h"
+#include "registration/pull_growth.h"
 
 #include <array>
 #include <cstddef>
 #include <vector>
 
 namespace pcl_floam {
-
-class ResidualRows;
 
 /// What some of the residuals come to: the twist of the equations is the velocity, their squares are counted by the
 /// robust weights alone, and lines are edges.
@@ -38,6 +37,7 @@ struct SweepSums {
 /// Memory of one registration, which the next one may use again.
 struct SurfaceRoom {
   std::vector<SurfaceSums> parts;   ///< of the chunks
+  std::vector<Pull> pulls;          ///< of the chunks
   std::vector<FoundSurface> edges;  ///< by the edge
 };
 
@@ -54,13 +54,23 @@ struct SurfaceResiduals {
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                  std::size_t edge_stride, SurfaceRoom& room) const;
 
+  /// Of the same residuals along one motion of the pose alone, and all edges: of a weak direction few of them tell.
+  [[nodiscard]] Pull pullAlong(const Vector6& motion, const SurfaceTerm& scan, std::size_t stride,
+                               const SurfaceTerm& edges, SurfaceRoom& room) const;
+
 private:
-  [[nodiscard]] SurfaceSums chunkOf(const PlacedPoints& placed) const;
-  void addPlane(const PlacedPoint& point, const Surface& plane, ResidualRows& rows, ResidualRows& noise,
-                SurfaceSums& sums) const;
-  void addLine(const PlacedPoint& point, const Surface& line, ResidualRows& rows, ResidualRows& noise,
-               SurfaceSums& sums) const;
-  void addPoint(const PlacedPoint& point, const Surface& near, ResidualRows& rows, SurfaceSums& sums) const;
+  /// \tparam Rows take the residuals: of a chunk, or along a motion
+  template <typename Rows>
+  void addAll(const PlacedPoints& placed, Rows& rows, SurfaceSums& sums) const;
+  template <typename Rows>
+  void addPlane(const PlacedPoint& point, const Surface& plane, Rows& rows, SurfaceSums& sums) const;
+  template <typename Rows>
+  void addLine(const PlacedPoint& point, const Surface& line, Rows& rows, SurfaceSums& sums) const;
+  template <typename Rows>
+  void addPoint(const PlacedPoint& point, const Surface& near, Rows& rows, SurfaceSums& sums) const;
+  template <typename Chunk>
+  void forEachChunk(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges, std::size_t edge_stride,
+                    SurfaceRoom& room, const Chunk& chunk) const;
   [[nodiscard]] Eigen::Vector3d turned(const std::array<float, 3>& run) const;
   [[nodiscard]] double weight(double squared, double variance, const Vector6& derivative, const PlacedPoint& p,
                               SurfaceSums& sums) const;
