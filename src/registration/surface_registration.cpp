@@ -58,10 +58,11 @@ public:
   SurfaceRegistration run()
   {
     SurfaceRegistration result;
-    conclude(result, iterate(result.report));
+    const SurfaceSums sums = iterate(result.report);
     if (problem_.evidence != Evidence::none && result.report.hasConverged()) {
       weighEvidence(result);
     }
+    conclude(result, sums);
     return result;
   }
 

@@ -24,14 +24,15 @@ enum class Termination : std::uint8_t {
 
 [[nodiscard]] const char* toString(Termination termination);
 
-/// A direction of motion that the correspondences hardly constrain. By surfaces what factors or locks tell of is not
-/// named, and several directions are at right angles to each other.
+/// A direction of motion that the correspondences hardly constrain, or only by the sensor's own pattern: what pulls the
+/// pose back along it does not grow with the way. By surfaces what factors or locks tell of is not named, and several
+/// directions are at right angles to each other.
 struct WeakDirection {
   /// Unit direction in (translation, rotation) about the sensor's position, in the world's axes; rotation
   /// components are scaled by the scene's size, so that both are metres of displacement of a typical point.
   Vector6 direction = Vector6::Zero();
   /// Of the scaled information, without the noise of the normals, over the sum of the weights; >= 0, and 0.1 to 1 where
-  /// a direction is well constrained.
+  /// a direction is well constrained. By surfaces 0 of what the sensor's pattern holds.
   double eigenvalue = 0.0;
 };
 
