@@ -89,9 +89,10 @@ SurfaceRegistration registerAround(SurfaceProblem expected, double side)
     SurfaceProblem aside = expected;
     aside.begins_off = sign * doubt.perturbation;
     aside.spacing = 0.0;
-    if (likelihood(registerSurfaces(aside)) > likelihood(best) + kOfOneMotion) {
+    SurfaceRegistration found = registerSurfaces(aside);
+    if (likelihood(found) > likelihood(best) + kOfOneMotion) {
       aside.spacing = expected.spacing;  // it is asked what holds the pose where that is taken
-      best = registerSurfaces(aside);
+      best = aside.spacing > 0.0 ? registerSurfaces(aside) : std::move(found);
     }
   }
   return best;

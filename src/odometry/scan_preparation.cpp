@@ -31,7 +31,8 @@ bool isSingleLayer(const CloudView& scan)
 void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters& parameters, double period)
 {
   findScanLines(scan, parameters.sensor, ScanLineSource::automatic, parameters.threads, grouping_, lines);
-  if (lines.lines() < 2 && isSingleLayer(scan)) {
+  const bool may_be_single = !lines.valid() || (parameters.engine == OdometryEngine::surfaces && lines.lines() == 1);
+  if (may_be_single && isSingleLayer(scan)) {
     lines = ScanLines();
     lines.failure = ScanLineFailure::single_layer;
   }

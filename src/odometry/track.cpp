@@ -91,6 +91,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   if ((rivals != Rivals::motions || isLong(sweep)) && !explanation_.isMet(found.explained()) && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
     again.evidence = problem.evidence;
+    again.spacing = rivals == Rivals::motions ? 0.0 : again.spacing;
     found = registerSurfaces(again);
   }
   return unlessByChance(std::move(found), explanation_);

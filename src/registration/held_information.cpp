@@ -5,42 +5,79 @@
 #include "registration/locked_motions.h"
 #include "registration/sweep_prior.h"
 
+#include <limits>
+
 namespace pcl_floam {
 
 namespace {
 
-/// One standard deviation, m: what is told of so well is told of by more places than any pattern reaches.
+/// One standard deviation, m: what is known better is seldom held by a pattern alone, and need not be tried.
 constexpr double kWellKnown = 0.004;
 /// Nor is there anything to try where next to nothing is told.
 constexpr double kUnknown = 1.0;
+/// And what turns the scan rather than move it is no direction, rad/m.
+constexpr double kTurns = 1.0;
 /// What holds a pose pulls by half of what it promises and more, also amid traffic; patterns by less than a fifth.
 constexpr double kHolds = 1.0 / 3.0;
+
+/// Of all motions by a metre along an axis, that of which the residuals tell least; for each axis that is to be tried.
+Motions motionsToTry(const Matrix6& covariance)
+{
+  const EigenAnalysis axes = analyse(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
+  Motions tried(6, 0);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double variance = axes.values[i];
+    const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
+    if (variance > kWellKnown * kWellKnown && variance < kUnknown * kUnknown && motion.tail<3>().norm() < kTurns) {
+      tried.conservativeResize(6, tried.cols() + 1);
+      tried.rightCols<1>() = motion;
+    }
+  }
+  return tried;
+}
+
+/// Combinations of the motions and how much of the growth each has that is promised, rising.
+EigenAnalysis sharesOf(const Motions& tried, double way, const PullsWhenMoved& pulls)
+{
+  constexpr double kNothing = 1e-9;  // of the stiffness
+  TriedMotions motions = TriedMotions::Zero();
+  motions.leftCols(tried.cols()) = tried;
+  Eigen::Matrix3d growth = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
+  for (Eigen::Index i = 0; i < tried.cols(); ++i) {
+    const Pulls behind = pulls(motions, -way * motions.col(i));
+    const Pulls ahead = pulls(motions, way * motions.col(i));
+    growth.col(i) = (ahead.against - behind.against) / (2.0 * way);
+    stiffness += (behind.stiffness + ahead.stiffness) / static_cast<double>(2 * tried.cols());
+  }
+  stiffness.diagonal().array() += kNothing * stiffness.trace() + std::numeric_limits<double>::min();
+  const Eigen::Index n = tried.cols();
+  const Within symmetric = 0.5 * (growth + growth.transpose()).topLeftCorner(n, n);
+  return analyse(symmetric, Within(stiffness.topLeftCorner(n, n)));
+}
 
 }  // namespace
 
 HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
-                                const std::function<Pull(const Vector6& motion, double way)>& pull_along)
+                                const PullsWhenMoved& pulls)
 {
   Matrix6 known = information;
   known.diagonal().array() += kNothingKnown;
-  const Matrix6 covariance = covarianceWithLocked(inverseOf(informationWithLocked(known, locked)), locked);
-  const EigenAnalysis axes = analyse(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
+  const Motions tried = motionsToTry(covarianceWithLocked(inverseOf(informationWithLocked(known, locked)), locked));
   HeldInformation held = {information, {}};
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const double variance = axes.values[i];
-    if (!(variance > kWellKnown * kWellKnown && variance < kUnknown * kUnknown)) {
-      continue;
+  if (tried.cols() == 0) {
+    return held;
+  }
+  const EigenAnalysis shares = sharesOf(tried, way, pulls);
+  for (Eigen::Index i = 0; i < tried.cols() && shares.values[i] < kHolds; ++i) {
+    const Vector6 combined = tried * shares.vectors.col(i);
+    const Vector6 motion = combined / combined.head<3>().norm();
+    const Vector6 told = held.information * motion;
+    const double along = motion.dot(told);
+    if (along > 0.0) {
+      held.information -= told * told.transpose() / along;
     }
-    // Of all motions by a metre along this axis, that which the residuals tell least of.
-    const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
-    if (!(shareOfGrowth(pull_along(motion, -way), pull_along(motion, way), way) >= kHolds)) {  // nor if nothing pulls
-      const Vector6 told = held.information * motion;
-      const double along = motion.dot(told);
-      if (along > 0.0) {
-        held.information -= told * told.transpose() / along;
-      }
-      held.not_held.push_back(motion);
-    }
+    held.not_held.push_back(motion);
   }
   return held;
 }

@@ -2,8 +2,6 @@
 /// What residuals tell of a pose, without what they only seem to tell.
 #pragma once
 
-#include "registration/pull_growth.h"
-
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
 #include <pcl_floam/registration/core/registration_report.h>
@@ -18,13 +16,25 @@ struct HeldInformation {
   std::vector<Vector6> not_held;  ///< motions by a metre, of which it tells nothing any more
 };
 
+/// What residuals say along some motions, at most three.
+struct Pulls {
+  Eigen::Vector3d against = Eigen::Vector3d::Zero();    ///< their gradient
+  Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();  ///< by which it grows, as their derivatives have it
+};
+
+/// At most three, one a column; those that there are not are zero.
+using TriedMotions = Eigen::Matrix<double, 6, 3, Eigen::DontAlign>;
+
+/// Of the residuals along some motions, when the pose has moved.
+using PullsWhenMoved = std::function<Pulls(const TriedMotions& motions, const Vector6& moved)>;
+
 /// A sensor's rings lie on the rings that it has drawn into the map, and hold the pose where it was, each with a small
-/// and definite error. So the pose is moved along the directions of which is known least.
+/// and definite error. So the pose is moved along the directions of which is known least, and its pulls along all of
+/// them are looked at (\ref shareOfGrowth): where two are known alike, neither need be the one that is not held.
 /// \param information of independent residuals; motions translate (m) before they turn (rad)
 /// \param way         m: by a part of what the scan's points lie apart
-/// \param pull_along  of the residuals when the pose has gone some way along a motion
 [[nodiscard]] HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
-                                              const std::function<Pull(const Vector6& motion, double way)>& pull_along);
+                                              const PullsWhenMoved& pulls);
 
 /// Adds what is not held to the weak directions, at right angles to those that are there, but for what else is known.
 /// \param besides information of the pose

@@ -12,8 +12,8 @@ struct Pull {
 
 /// How much of the growth that is promised is there, when a pose has gone some way to either side. What is drawn to the
 /// nearest part of a sampling pattern, rings on a wall or the points of a surface, is drawn to the next part after half
-/// of the pattern's spacing: its pull comes back nowhere, however many points have it. 1: all; with noise it may be
-/// below 0.
+/// of the pattern's spacing. If the way is longer than that, its pull comes back nowhere, however many points have it.
+/// 1: all; with noise it may be below 0.
 inline double shareOfGrowth(const Pull& behind, const Pull& ahead, double way)
 {
   return (ahead.against - behind.against) / (way * (behind.stiffness + ahead.stiffness));

@@ -9,7 +9,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
@@ -218,16 +217,17 @@ private:
     if (!is_tried || problem_.is_rival || !(problem_.spacing > 0.0)) {
       return {information, {}};
     }
-    return heldInformation(information, problem_.locked, kWay * problem_.spacing,
-                           [this](const Vector6& motion, double way) { return pullAlong(motion, way); });
+    return heldInformation(
+        information, problem_.locked, kWay * problem_.spacing,
+        [this](const TriedMotions& motions, const Vector6& moved) { return pullsWhenMoved(motions, moved); });
   }
 
-  [[nodiscard]] Pull pullAlong(const Vector6& motion, double way)
+  [[nodiscard]] Pulls pullsWhenMoved(const TriedMotions& motions, const Vector6& moved)
   {
-    SweepEstimate moved = at_;
-    moved.move(way * motion);
-    const Matrix6 uncertainty = way * way * motion * motion.transpose();
-    return residualsAt(moved, uncertainty).pullAlong(motion, problem_.scan, first_stride_, problem_.edges, room_);
+    SweepEstimate there = at_;
+    there.move(moved);
+    return residualsAt(there, moved * moved.transpose())
+        .pullsAlong(motions, problem_.scan, first_stride_, problem_.edges, room_);
   }
 
   struct Equations {

@@ -50,7 +50,8 @@ struct SurfaceProblem {
   /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
   /// only what they do not tell is left to the prior.
   bool is_rival = false;
-  /// m, of the scan's points, by which the pose is moved to see what holds it; 0: that is not asked.
+  /// m, as far as the scan's points lie apart: the pose is moved by a part of it to see what holds it. 0, and of
+  /// rivals: that is not asked.
   double spacing = 0.0;
   int max_iterations = 12;
   int threads = 1;
@@ -65,7 +66,7 @@ struct SurfaceRegistration {
   /// anywhere within a metre.
   double evidence = 0.0;
   std::vector<float> point_evidence;  ///< of the scan's points (\ref Evidence::of_points)
-  /// Covariance of the pose as the scan alone tells it, whatever was expected: of what does not hold it, nothing.
+  /// Covariance of the pose as the scan alone tells it, whatever was expected: nothing of where it is not held.
   Matrix6 told = Matrix6::Zero();
   std::size_t points = 0;  ///< that took part
 

@@ -67,24 +67,27 @@ struct ChunkRows {
   }
 };
 
-/// The same along one motion.
-struct ChunkPull {
-  const Vector6& motion;
-  Pull pull;
+/// The same along some motions.
+struct ChunkPulls {
+  const TriedMotions& motions;
+  Pulls pulls;
 
   void add(const Vector6& derivative, double residual, double weight, double /*since_middle*/)
   {
-    const double along = derivative.dot(motion);
-    pull.against += weight * along * residual;
-    pull.stiffness += weight * along * along;
+    const Eigen::Vector3d along = motions.transpose() * derivative;
+    pulls.against += weight * residual * along;
+    pulls.stiffness += weight * along * along.transpose();
   }
   void addNearest(const Eigen::Matrix3d& observed, const Eigen::Vector3d& off, const PlacedPoint& p, double weight,
                   double /*since_middle*/)
   {
-    const Eigen::Vector3d moved = motion.head<3>() + Eigen::Vector3d(motion.tail<3>()).cross(p.arm);
-    const Eigen::Vector3d seen = observed * moved;
-    pull.against += weight * seen.dot(off);
-    pull.stiffness += weight * seen.dot(moved);
+    Eigen::Matrix3d moved;  // the point, by each
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      moved.col(i) = motions.col(i).head<3>() + Eigen::Vector3d(motions.col(i).tail<3>()).cross(p.arm);
+    }
+    const Eigen::Matrix3d seen = weight * observed * moved;
+    pulls.against += seen.transpose() * off;
+    pulls.stiffness += seen.transpose() * moved;
   }
   void addNoise(const Eigen::Vector3d& /*normal*/, const PlacedPoint& /*p*/, double /*weight*/) {}
 };
@@ -136,20 +139,20 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, 
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
-Pull SurfaceResiduals::pullAlong(const Vector6& motion, const SurfaceTerm& scan, std::size_t stride,
-                                 const SurfaceTerm& edges, SurfaceRoom& room) const
+Pulls SurfaceResiduals::pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, std::size_t stride,
+                                   const SurfaceTerm& edges, SurfaceRoom& room) const
 {
   room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, 1));
   forEachChunk(scan, stride, edges, 1, room, [&](std::size_t c, const PlacedPoints& placed) {
-    ChunkPull rows{motion, {}};
+    ChunkPulls rows{motions, {}};
     SurfaceSums unused;
     addAll(placed, rows, unused);
-    room.pulls[c] = rows.pull;
+    room.pulls[c] = rows.pulls;
   });
-  Pull total;
-  for (const Pull& pull : room.pulls) {
-    total.against += pull.against;
-    total.stiffness += pull.stiffness;
+  Pulls total;
+  for (const Pulls& pulls : room.pulls) {
+    total.against += pulls.against;
+    total.stiffness += pulls.stiffness;
   }
   return total;
 }

@@ -2,9 +2,9 @@
 /// How far a sweep's points are from the surfaces of a map, summed up.
 #pragma once
 
+#include "registration/held_information.h"
 #include "registration/normal_equations.h"
 #include "registration/placed_points.h"
-#include "registration/pull_growth.h"
 
 #include <array>
 #include <cstddef>
@@ -37,7 +37,7 @@ struct SweepSums {
 /// Memory of one registration, which the next one may use again.
 struct SurfaceRoom {
   std::vector<SurfaceSums> parts;   ///< of the chunks
-  std::vector<Pull> pulls;          ///< of the chunks
+  std::vector<Pulls> pulls;         ///< of the chunks
   std::vector<FoundSurface> edges;  ///< by the edge
 };
 
@@ -54,12 +54,12 @@ struct SurfaceResiduals {
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                  std::size_t edge_stride, SurfaceRoom& room) const;
 
-  /// Of the same residuals along one motion of the pose alone, and all edges: of a weak direction few of them tell.
-  [[nodiscard]] Pull pullAlong(const Vector6& motion, const SurfaceTerm& scan, std::size_t stride,
-                               const SurfaceTerm& edges, SurfaceRoom& room) const;
+  /// Of the same residuals along some motions of the pose alone, and all edges: of a weak direction few of them tell.
+  [[nodiscard]] Pulls pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, std::size_t stride,
+                                 const SurfaceTerm& edges, SurfaceRoom& room) const;
 
 private:
-  /// \tparam Rows take the residuals: of a chunk, or along a motion
+  /// \tparam Rows take the residuals: of a chunk, or along some motions
   template <typename Rows>
   void addAll(const PlacedPoints& placed, Rows& rows, SurfaceSums& sums) const;
   template <typename Rows>

@@ -1,5 +1,6 @@
 // Registration with a sensor's own pattern: what holds a pose, and what only seems to.
 #include "registration/held_information.h"
+#include "registration/pull_growth.h"
 #include "registration/surface_registration.h"
 #include "support/corner.h"
 
@@ -124,19 +125,63 @@ TEST(HeldInformation, WhatIsKnownBesidesStays)
   EXPECT_NEAR(toldAlong(found), 0.01, 1e-3);
 }
 
-TEST(HeldInformation, TakesNothingFromOtherMotions)
+/// Of which the first of some motions is held, and as much as all others promise it.
+PullsWhenMoved heldAlong(const Vector6& held)
 {
-  Matrix6 information = Matrix6::Identity() * 1e6;
+  return [held](const TriedMotions& motions, const Vector6& moved) {
+    const Eigen::Vector3d along = motions.transpose() * held;
+    return Pulls{1e4 * along * held.dot(moved), 1e4 * motions.leftCols(3).transpose() * motions};
+  };
+}
+
+/// Whichever axes are tried.
+TEST(HeldInformation, IsTakenAwayWhereNothingPullsAndNowhereElse)
+{
+  Matrix6 information = 1e6 * Matrix6(Matrix6::Identity());
+  information.topLeftCorner<3, 3>() = Eigen::Vector3d(1e4, 1e4, 1e6).asDiagonal();
+  information(0, 4) = information(4, 0) = 3e4;  // whoever goes on nods
+  for (const double turn : {0.0, 0.3, 0.8}) {
+    Vector6 direction = Vector6::Zero();
+    direction.head<2>() = Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    const HeldInformation held = heldInformation(information, {}, 0.1, heldAlong(direction));
+    ASSERT_EQ(held.not_held.size(), 1U) << turn;
+    const Vector6& motion = held.not_held.front();
+    EXPECT_NEAR(motion.dot(direction), 0.0, 1e-6) << turn;
+    EXPECT_LT((held.information * motion).norm(), 1e-6) << turn;
+    EXPECT_NEAR(held.information(2, 2), information(2, 2), 1e-6);
+    EXPECT_GT(direction.dot(held.information * direction), 0.9e4);
+  }
+}
+
+TEST(HeldInformation, IsNotAskedOfWhatIsLockedOrKnownWell)
+{
+  const PullsWhenMoved nothing = [](const TriedMotions& /*motions*/, const Vector6& /*moved*/) { return Pulls(); };
+  Matrix6 information = 1e6 * Matrix6(Matrix6::Identity());
+  EXPECT_TRUE(heldInformation(information, {}, 0.1, nothing).not_held.empty());
   information(0, 0) = 1e4;
-  const auto nothing = [](const Vector6& /*motion*/, double /*way*/) { return Pull(); };
-  const HeldInformation held = heldInformation(information, {}, 0.1, nothing);
-  ASSERT_EQ(held.not_held.size(), 1U);
-  Matrix6 rest = information;
-  rest(0, 0) = 0.0;
-  EXPECT_LT((held.information - rest).norm(), 1e-3);
-  DegreesOfFreedom locked = {};
-  locked[0] = true;
-  EXPECT_TRUE(heldInformation(information, locked, 0.1, nothing).not_held.empty()) << "it is not sought";
+  EXPECT_EQ(heldInformation(information, {}, 0.1, nothing).not_held.size(), 1U);
+  EXPECT_TRUE(heldInformation(information, {true, false, false, false, false, false}, 0.1, nothing).not_held.empty());
+}
+
+/// The trial leaves nothing behind.
+TEST(HeldInformation, ChangesNothingElse)
+{
+  const std::vector<ScanPoint> points = scanOf(0.05);
+  const Posts target(0.05);
+  SurfaceProblem problem = test::problemOf(points, target);
+  problem.edges = problem.scan;
+  problem.evidence = Evidence::of_points;
+  const SurfaceRegistration plain = registerSurfaces(problem);
+  problem.spacing = kPointSpacing;
+  for (const int threads : {1, 2, 3}) {
+    problem.threads = threads;
+    const SurfaceRegistration tried = registerSurfaces(problem);
+    EXPECT_EQ(tried.report.weak_directions.size(), 1U);
+    EXPECT_EQ(tried.report.target_T_source.translation, plain.report.target_T_source.translation);
+    EXPECT_EQ(tried.evidence, plain.evidence);
+    EXPECT_EQ(tried.point_evidence, plain.point_evidence);
+    EXPECT_EQ(tried.posterior, plain.posterior);
+  }
 }
 
 TEST(PullGrowth, IsAllOfWhatASpringPromises)
