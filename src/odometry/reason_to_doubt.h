@@ -9,7 +9,7 @@
 
 namespace pcl_floam {
 
-/// A pose that the map does not bear out is not called tracked, nor one that the scan's own pattern may hold. The first
+/// A pose that the map does not bear out is not called tracked, nor one of a single layer in space. The first
 /// sweeps' map is too young to tell.
 /// \param failure   why there are no scan lines, if there are none
 /// \param explained part of the scan's points that lie on surfaces of the map

@@ -19,10 +19,11 @@ namespace pcl_floam {
 enum class TrackingState : std::uint8_t {
   initialized,  ///< first usable scan: the map begins with it, its pose is the initial pose
   tracked,      ///< registered with the map
-  doubtful,     ///< registered, but the pose may be wrong: nothing but the expectation holds it along some direction (a
-                ///< smooth tunnel; an open road, until something beside it was seen), or, by surfaces, the map has no
-                ///< surface for most of the scan, several motions still explain the first twelve scans, the lidar has
-                ///< two to four scan lines, or a single layer and height, roll and pitch are not locked
+  doubtful,     ///< registered, but the pose may be wrong: nothing but the expectation, or the sensor's own pattern,
+                ///< holds it along some direction (a smooth tunnel; an open road, until something beside it was seen;
+                ///< rings near to walls), or, by surfaces, the map has no surface for most of the scan, several motions
+                ///< still explain the first twelve scans, or the lidar has a single layer and height, roll and pitch
+                ///< are not locked
   predicted,    ///< no usable data: the pose is the prediction of the constant-velocity model
   not_started   ///< no usable scan yet: the pose is the initial pose
 };

@@ -57,7 +57,8 @@ struct RegistrationReport {
   Matrix6 information = Matrix6::Zero();
   /// Covariance of the pose in the same parametrisation: by features and clouds the information's inverse times the
   /// variance of an independent residual, which seven neighbouring ones make up. The map's own drift comes on top. Weak
-  /// directions have a variance too large to be used, not infinity, or that of the motion prior.
+  /// directions have a variance too large to be used, not infinity, or that of the motion prior; what the sensor's
+  /// pattern holds keeps its own here, and has any motion's in that of the odometry's report.
   Matrix6 covariance = Matrix6::Zero();
   std::vector<WeakDirection> weak_directions;
 
