@@ -13,11 +13,11 @@ namespace {
 
 /// One standard deviation, m: what is known better is seldom held by a pattern alone, and need not be tried.
 constexpr double kWellKnown = 0.004;
-/// Nor is there anything to try where next to nothing is told.
+/// The same, m: where next to nothing is told there is nothing to try.
 constexpr double kUnknown = 1.0;
-/// And what turns the scan rather than move it is no direction, rad/m.
+/// rad/m: what turns the scan rather than move it is not found by small ways.
 constexpr double kTurns = 1.0;
-/// What holds a pose pulls by half of what it promises and more, also amid traffic; patterns by less than a fifth.
+/// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns less than a fifth.
 constexpr double kHolds = 1.0 / 3.0;
 
 /// Of all motions by a metre along an axis, that of which the residuals tell least; for each axis that is to be tried.
@@ -49,6 +49,10 @@ EigenAnalysis sharesOf(const Motions& tried, double way, const PullsWhenMoved& p
     const Pulls ahead = pulls(motions, way * motions.col(i));
     growth.col(i) = (ahead.against - behind.against) / (2.0 * way);
     stiffness += (behind.stiffness + ahead.stiffness) / static_cast<double>(2 * tried.cols());
+  }
+  if (!growth.allFinite() || !stiffness.allFinite()) {  // a map of the user's may give anything: that holds nothing
+    growth.setZero();
+    stiffness.setIdentity();
   }
   stiffness.diagonal().array() += kNothing * stiffness.trace() + std::numeric_limits<double>::min();
   const Eigen::Index n = tried.cols();

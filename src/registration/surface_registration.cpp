@@ -212,7 +212,7 @@ private:
   /// Of independent residuals, as far as they hold the pose.
   [[nodiscard]] HeldInformation held(bool is_tried)
   {
-    constexpr double kWay = 0.25;  // of the points' spacing
+    constexpr double kWay = 0.25;  // of the points' spacing: within a cell, and farther than rings near walls lie apart
     const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
     if (!is_tried || problem_.is_rival || !(problem_.spacing > 0.0)) {
       return {information, {}};

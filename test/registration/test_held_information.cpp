@@ -160,6 +160,12 @@ TEST(HeldInformation, IsNotAskedOfWhatIsLockedOrKnownWell)
   EXPECT_TRUE(heldInformation(information, {}, 0.1, nothing).not_held.empty());
   information(0, 0) = 1e4;
   EXPECT_EQ(heldInformation(information, {}, 0.1, nothing).not_held.size(), 1U);
+  const PullsWhenMoved not_a_number = [](const TriedMotions& /*motions*/, const Vector6& /*moved*/) {
+    return Pulls{Eigen::Vector3d::Constant(std::nan("")), Eigen::Matrix3d::Constant(std::nan(""))};
+  };
+  const HeldInformation held = heldInformation(information, {}, 0.1, not_a_number);
+  EXPECT_EQ(held.not_held.size(), 1U);
+  EXPECT_TRUE(held.information.allFinite());
   EXPECT_TRUE(heldInformation(information, {true, false, false, false, false, false}, 0.1, nothing).not_held.empty());
 }
 
