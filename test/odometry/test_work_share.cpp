@@ -5,18 +5,32 @@
 
 namespace pcl_floam {
 
-TEST(WorkShare, BearsWhatIsLeftBesideTheTracksThatAreFollowed)
+namespace {
+
+/// Sweeps of before that a late track takes in beside one.
+int caughtUp(double effort, std::size_t followed)
 {
-  constexpr int kEffort = 20;
-  for (const std::size_t followed : {1U, 4U}) {
-    WorkShare share(kEffort, followed);
-    int caught_up = 0;
-    while (share.take(WorkShare::kCatchUp)) {
-      ++caught_up;
-    }
-    const double left = kEffort - WorkShare::kFollow * (static_cast<double>(followed) - 1.0);
-    EXPECT_EQ(caught_up, static_cast<int>(left / WorkShare::kCatchUp)) << followed;
+  WorkShare share(effort, followed);
+  int caught_up = 0;
+  while (share.take(WorkShare::kCatchUp)) {
+    ++caught_up;
   }
+  return caught_up;
+}
+
+}  // namespace
+
+TEST(WorkShare, MoreEffortCatchesUpMore)
+{
+  EXPECT_GT(caughtUp(20, 1), caughtUp(10, 1));
+  EXPECT_GT(caughtUp(40, 1), caughtUp(20, 1));
+  EXPECT_LE(caughtUp(20, 1), 20) << "a sweep of before is a registration at least";
+}
+
+TEST(WorkShare, TracksThatAreFollowedLeaveLess)
+{
+  EXPECT_LT(caughtUp(20, 4), caughtUp(20, 1));
+  EXPECT_LT(caughtUp(20, 8), caughtUp(20, 4));
 }
 
 TEST(WorkShare, GoesOnHoweverMuchAPartCosts)

@@ -34,9 +34,25 @@ TEST(Weights, EachKindSumsToOneAsEquation9)
 
 TEST(Weights, ElseEachFeatureHasItsSayHoweverManyThereAre)
 {
+  const auto each = [](const std::vector<float>& smoothness, FeatureKind kind, WeightScheme scheme) {
+    return sum(smoothnessWeights(features(smoothness), kind, scheme)) / static_cast<double>(smoothness.size());
+  };
   for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted}) {
-    EXPECT_NEAR(sum(smoothnessWeights(features(kSmoothness), FeatureKind::plane, scheme)), 4.0, 1e-12);
-    EXPECT_NEAR(sum(smoothnessWeights(features(kSmoothness), FeatureKind::edge, scheme)), 4.0 * kEdgeWeight, 1e-12);
+    const double edge = each(kSmoothness, FeatureKind::edge, scheme);
+    for (const std::vector<float>& few : {std::vector<float>{0.2F}, {0.3F, 0.3F}, {0.9F, 0.1F, 0.4F}}) {
+      EXPECT_NEAR(each(few, FeatureKind::plane, scheme), 1.0, 1e-12) << "residuals keep their units";
+      EXPECT_NEAR(each(few, FeatureKind::edge, scheme), edge, 1e-12);
+    }
+  }
+}
+
+/// Edges are seen by few points: they say something, but no edge says as much as a plane.
+TEST(Weights, EdgesCountLessThanPlanes)
+{
+  for (const WeightScheme scheme : {WeightScheme::uniform, WeightScheme::inverted}) {
+    const double edges = sum(smoothnessWeights(features(kSmoothness), FeatureKind::edge, scheme));
+    EXPECT_GT(edges, 0.0);
+    EXPECT_LT(edges, 0.5 * sum(smoothnessWeights(features(kSmoothness), FeatureKind::plane, scheme)));
   }
 }
 
@@ -61,8 +77,11 @@ TEST(Weights, InvertedFormFavoursSharpEdgesAndFlatPlanes)
 
 TEST(Weights, UniformOnesAreAllAlike)
 {
-  for (const double weight : smoothnessWeights(features(kSmoothness), FeatureKind::plane, WeightScheme::uniform)) {
-    EXPECT_DOUBLE_EQ(weight, 1.0);
+  for (const FeatureKind kind : {FeatureKind::edge, FeatureKind::plane}) {
+    const auto weights = smoothnessWeights(features(kSmoothness), kind, WeightScheme::uniform);
+    for (const double weight : weights) {
+      EXPECT_DOUBLE_EQ(weight, weights[0]);
+    }
   }
 }
 
