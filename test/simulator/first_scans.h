@@ -2,7 +2,7 @@
 /// The first scans of a drive, and what the odometry makes of them.
 #pragma once
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -33,9 +33,7 @@ inline bool saysSeveralExplain(const OdometryReport& report)
 
 inline SimulationOptions optionsOf(const Start& start)
 {
-  SimulationOptions options;
-  options.world = "highway";
-  options.sensor = start.sensor;
+  SimulationOptions options = testWorld("highway", start.sensor);
   options.seed = start.seed;
   options.start = start.seconds;
   options.dropout = start.dropout;

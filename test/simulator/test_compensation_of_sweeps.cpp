@@ -1,6 +1,6 @@
 // MotionCompensation on simulated sweeps, whose undistorted form is known.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/filters/motion_compensation.h>
 
@@ -41,9 +41,7 @@ INSTANTIATE_TEST_SUITE_P(Simulation, CompensationOfSweeps,
 
 TEST_P(CompensationOfSweeps, GivesBackTheUndistortedSweepToWithinTheRangeNoise)
 {
-  SimulationOptions options;
-  options.world = GetParam().world;
-  options.sensor = "vlp16";
+  SimulationOptions options = testWorld(GetParam().world, "vlp16");
   options.start = GetParam().start;
   for (const double noise : {0.0, 0.02}) {
     options.range_noise = noise;

@@ -2,7 +2,7 @@
 
 #include "odometry/scan_preparation.h"
 #include "odometry/track.h"
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <gtest/gtest.h>
 
@@ -28,9 +28,7 @@ protected:
 
   void visit(std::uint64_t seed)
   {
-    SimulationOptions options;
-    options.world = GetParam().world;
-    options.sensor = GetParam().sensor;
+    SimulationOptions options = testWorld(GetParam().world, GetParam().sensor);
     options.seed = seed;
     options.start = 8.0;
     Simulation simulation(options);

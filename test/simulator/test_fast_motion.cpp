@@ -1,7 +1,7 @@
 // A sensor that is swung by hand, half as fast again as it usually is in the simulated office, from the first scan on,
 // and one that nods among shelves.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 #include "support/constants.h"
 
 #include <pcl_floam/odometry/odometry.h>
@@ -26,8 +26,7 @@ constexpr double kFaster = 1.5;
 /// With fewer sweeps a second, taken for ten a second, all goes on faster, and accelerations grow with the square.
 SimulationOptions fasterSwing(std::uint64_t seed, double start)
 {
-  SimulationOptions options;
-  options.world = "handheld";
+  SimulationOptions options = testWorld("handheld");
   options.seed = seed;
   options.rate = 1.0 / (kFaster * kPeriod);
   options.start = start;
@@ -90,10 +89,8 @@ class Nodding : public testing::TestWithParam<unsigned> {};
 TEST_P(Nodding, IsFollowedAmongShelves)
 {
   constexpr std::size_t kScans = 70;
-  SimulationOptions options;
-  options.sensor = "vlp16";
+  SimulationOptions options = testWorld("warehouse", "vlp16");
   options.seed = GetParam();
-  options.family = Family::test;
   options.realism = Realism::real;
   options.nod = 10.0 * kPi / 180.0;
   options.nod_rate = 2.0;

@@ -1,5 +1,6 @@
 // A lorry that keeps beside the sensor and fills a third of its view must not draw the pose along.
-#include "simulation.h"
+#include "simulator/test_world.h"
+#include "support/constants.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -21,11 +22,9 @@ struct Outcome {
 /// A city from standstill on, around the first corner.
 Outcome driveThroughTown()
 {
-  constexpr double kDegrees = 57.29577951308232;
+  constexpr double kDegrees = 180.0 / test::kPi;
   constexpr std::size_t kScans = 180;
-  SimulationOptions options;
-  options.world = "urban";
-  options.sensor = "hdl64";
+  SimulationOptions options = testWorld("urban", "hdl64");
   options.seed = 21;
   options.truck = true;
   Simulation simulation(options);

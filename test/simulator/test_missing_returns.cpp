@@ -1,6 +1,6 @@
 // Drives of which nine in ten returns are missing, from the first scan on, or all for a second.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -25,9 +25,7 @@ TEST_P(MissingReturns, NineInTenLoseNothing)
 {
   constexpr std::size_t kScans = 60;
   constexpr double kPeriod = 0.1;  // s
-  SimulationOptions options;
-  options.world = GetParam().world;
-  options.sensor = GetParam().sensor;
+  SimulationOptions options = testWorld(GetParam().world, GetParam().sensor);
   options.seed = 21;
   options.dropout = 0.9;
   Simulation simulation(options);
@@ -64,8 +62,7 @@ TEST(SecondWithoutReturns, IsPredictedOverAndThePoseFoundAgain)
 {
   constexpr std::size_t kScans = 50;
   constexpr double kPeriod = 0.1;  // s
-  SimulationOptions options;
-  options.world = "handheld";
+  SimulationOptions options = testWorld("handheld");
   options.seed = 21;
   options.start = 3.0;
   options.gap_from = 2.0;

@@ -1,5 +1,5 @@
 // Cars and people do not stay in the map where they no longer are.
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -91,9 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Worlds, MovingObjects,
 
 TEST_P(MovingObjects, LeaveTheMapWhereTheyNoLongerAre)
 {
-  SimulationOptions options;
-  options.world = GetParam().world;
-  options.sensor = GetParam().sensor;
+  SimulationOptions options = testWorld(GetParam().world, GetParam().sensor);
   options.seed = 21;
   options.start = GetParam().start;
   Simulation simulation(options);

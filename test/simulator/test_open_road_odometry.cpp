@@ -1,6 +1,6 @@
 // Open roads, where the sensor's own rings are most of what it sees: neither taken for rest nor set in motion.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -33,12 +33,9 @@ TEST_P(OpenRoadOdometry, IsFollowed)
 {
   constexpr std::size_t kScans = 90;
   constexpr std::size_t kSettled = 15;
-  SimulationOptions options;
-  options.world = "open-road";
-  options.family = Family::test;
+  SimulationOptions options = testWorld("open-road", GetParam().sensor);
   options.seed = GetParam().seed;
   options.begin = GetParam().begin;
-  options.sensor = GetParam().sensor;
   Simulation simulation(options);
   OdometryParameters parameters;
   Odometry<PointXYZIRT> odometry(parameters);

@@ -1,6 +1,6 @@
 // Lidars whose head does not turn: their views, and the odometry that follows them without being told.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 #include "support/constants.h"
 
 #include <pcl_floam/odometry/odometry.h>
@@ -27,9 +27,7 @@ class SolidState : public testing::TestWithParam<SolidStateView> {
 protected:
   static SimulationOptions options()
   {
-    SimulationOptions options;
-    options.world = "room";
-    options.sensor = GetParam().sensor;
+    SimulationOptions options = testWorld("room", GetParam().sensor);
     options.start = 3.0;
     options.range_noise = 0.0;
     return options;
@@ -101,9 +99,7 @@ TEST_P(SolidState, PointsAreCarriedByTheMotion)
 TEST(SolidStateOdometry, IsFollowedWithoutBeingTold)
 {
   for (const char* sensor : {"mid360", "avia", "hap"}) {
-    SimulationOptions options;
-    options.world = "room";
-    options.sensor = sensor;
+    SimulationOptions options = testWorld("room", sensor);
     options.seed = 5;
     Simulation simulation(options);
     Odometry<PointXYZIRT> odometry;

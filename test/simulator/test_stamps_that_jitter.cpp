@@ -1,5 +1,5 @@
 // Stamps that are taken when a scan arrives, now sooner, now later.
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -17,10 +17,7 @@ TEST(StampsThatJitter, MoveNoPose)
   constexpr std::size_t kScans = 50;
   constexpr double kPeriod = 0.1;   // s
   constexpr double kJitter = 0.02;  // s, one standard deviation
-  SimulationOptions options;
-  options.world = "urban";
-  options.sensor = "vlp16";
-  options.family = Family::test;
+  SimulationOptions options = testWorld("urban", "vlp16");
   options.seed = 3;
   options.start = 5.0;
   Simulation simulation(options);

@@ -1,6 +1,6 @@
 // Clouds without rings, times and order: which way the head turned, and whether it did, shows as the sensor moves.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -21,8 +21,7 @@ namespace {
 
 SimulationOptions simulated(const std::string& world, std::uint64_t seed)
 {
-  SimulationOptions options;
-  options.world = world;
+  SimulationOptions options = testWorld(world);
   options.seed = seed;
   return options;
 }

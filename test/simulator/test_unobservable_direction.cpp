@@ -1,6 +1,6 @@
 // A smooth corridor, where nothing tells of the way along it.
 
-#include "simulation.h"
+#include "simulator/test_world.h"
 
 #include <pcl_floam/odometry/odometry.h>
 
@@ -20,8 +20,7 @@ TEST(UnobservableDirection, IsReported)
 {
   constexpr std::size_t kTunnelScans = 80;
   constexpr std::size_t kJudgedFrom = 15;
-  SimulationOptions options;
-  options.world = "tunnel";
+  SimulationOptions options = testWorld("tunnel");
   options.seed = 25;
   Simulation simulation(options);
   Odometry<PointXYZIRT> odometry;
@@ -45,10 +44,7 @@ TEST(UnobservableDirection, IsNotHiddenByTheSensorsOwnColumns)
   constexpr std::size_t kCorridorScans = 40;
   std::size_t judged = 0;
   for (const unsigned seed : {6U, 9U, 14U}) {
-    SimulationOptions options;
-    options.world = "corridor";
-    options.sensor = "os64";
-    options.family = Family::test;
+    SimulationOptions options = testWorld("corridor", "os64");
     options.seed = seed;
     Simulation simulation(options);
     OdometryParameters parameters;
@@ -83,9 +79,7 @@ TEST(UnobservableDirection, IsGoneThroughBetweenDoors)
   constexpr std::size_t kCorridorScans = 200;
   constexpr double kFarthestOff = 0.2;  // m, over 22 m
   for (const unsigned seed : {2U, 4U}) {
-    SimulationOptions options;
-    options.world = "corridor";
-    options.family = Family::test;
+    SimulationOptions options = testWorld("corridor");
     options.realism = Realism::real;
     options.seed = seed;
     Simulation simulation(options);
@@ -115,8 +109,7 @@ TEST(UnobservableDirection, IsLeftToAHint)
   constexpr std::size_t kTunnelScans = 80;
   constexpr double kWheels = 0.02;   // m
   constexpr double kUnknown = 10.0;  // m and rad
-  SimulationOptions options;
-  options.world = "tunnel";
+  SimulationOptions options = testWorld("tunnel");
   options.seed = 26;
   Simulation simulation(options);
   OdometryParameters parameters;
