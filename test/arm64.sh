@@ -45,8 +45,8 @@ make_sysroot() { # make_sysroot PACKAGES
 packages=$(grep -oE '\b[a-z0-9+-]+-dev\b' cmake/install_packages.sh | paste -sd,),libstdc++-12-dev
 [ "$(cat "$sysroot/packages" 2>/dev/null)" = "$packages" ] || make_sysroot "$packages"
 
-tests=(test_common test_filters test_scan_lines test_map test_voxel_pyramid test_odometry_parts test_odometry
-       test_registration_parts test_cloud_registration test_io test_recordings)
+tests=(test_common test_evaluation test_filters test_scan_lines test_map test_motion test_odometry_parts test_odometry
+       test_surface_registration test_registration_parts test_cloud_registration test_io test_recordings)
 build() { # build NAME TARGETS [OPTION]...
   local name=$1 targets=$2
   shift 2
