@@ -1,7 +1,7 @@
 // Edges at the corners of a room, planes on its walls.
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
-#include "support/feature_rooms.h"
+#include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
 

@@ -2,7 +2,7 @@
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
 #include "support/constants.h"
-#include "support/feature_rooms.h"
+#include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
 

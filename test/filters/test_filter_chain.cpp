@@ -1,7 +1,7 @@
 // This library's filters among PCL's, through their common bases, on clouds and on indices.
 // PointXYZIRT is no type of PCL's own.
 #define PCL_NO_PRECOMPILE
-#include "support/feature_rooms.h"
+#include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
 #include <pcl_floam/filters/motion_compensation.h>

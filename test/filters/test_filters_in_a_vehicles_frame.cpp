@@ -1,7 +1,6 @@
 // Clouds that are given in a vehicle's frame: filters that are told where the sensor is do as in the sensor's own.
 #define PCL_NO_PRECOMPILE
 #include "support/constants.h"
-#include "support/room_scans.h"
 #include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/feature_extraction.h>
@@ -24,7 +23,7 @@ using Bare = pcl::PointCloud<pcl::PointXYZ>;
 const SE3 kVehicleFromSensor = exp((Vector6() << 1.5, -0.4, 1.8, 0.1, 0.35, 2.0).finished());
 
 /// A room without rings and times, which must be found from where its points lie.
-Bare::Ptr room(const Vector6& twist = Vector6::Zero())
+Bare::Ptr roomScan(const Vector6& twist = Vector6::Zero())
 {
   return pcl::make_shared<Bare>(
       toPositions(sweepRoom(Room(), Lidar(), [&](double fraction) { return exp(Vector6(fraction * twist)); })));
@@ -52,9 +51,9 @@ TEST(FiltersInAVehiclesFrame, FindTheSensorsFeaturesInIt)
   FeatureSet of_sensor;
   FeatureSet of_vehicle;
   FeatureExtraction<pcl::PointXYZ> extraction;
-  extraction.setInputCloud(room());
+  extraction.setInputCloud(roomScan());
   ASSERT_TRUE(extraction.extract(of_sensor));
-  extraction.setInputCloud(moved(*room(), kVehicleFromSensor));
+  extraction.setInputCloud(moved(*roomScan(), kVehicleFromSensor));
   extraction.setSensorPose(kVehicleFromSensor);
   EXPECT_EQ(extraction.getSensorPose().translation, kVehicleFromSensor.translation);
   ASSERT_TRUE(extraction.extract(of_vehicle));
@@ -83,12 +82,12 @@ TEST(FiltersInAVehiclesFrame, UndoItsMotionByTheSensorsAzimuths)
   const Vector6 twist = (Vector6() << 0.4, 0.1, 0.0, 0.0, 0.0, 0.1).finished();  // of the sensor
   MotionCompensation<pcl::PointXYZ> compensation;
   Bare of_sensor;
-  compensation.setInputCloud(room(twist));
+  compensation.setInputCloud(roomScan(twist));
   compensation.setTwist(twist);
   compensation.filter(of_sensor);
   ASSERT_EQ(compensation.getScanTiming().source, ScanTimingSource::azimuth);
   Bare of_vehicle;
-  compensation.setInputCloud(moved(*room(twist), kVehicleFromSensor));
+  compensation.setInputCloud(moved(*roomScan(twist), kVehicleFromSensor));
   compensation.setSensorPose(kVehicleFromSensor);
   compensation.setMotion(kVehicleFromSensor * exp(twist) * kVehicleFromSensor.inverse());
   compensation.filter(of_vehicle);
@@ -101,10 +100,10 @@ TEST(FiltersInAVehiclesFrame, RaisePointsAsTheSensorSeesThem)
   VerticalCorrection<pcl::PointXYZ> correction;
   correction.setAngle(1.0);
   Bare of_sensor;
-  correction.setInputCloud(room());
+  correction.setInputCloud(roomScan());
   correction.filter(of_sensor);
   Bare of_vehicle;
-  correction.setInputCloud(moved(*room(), kVehicleFromSensor));
+  correction.setInputCloud(moved(*roomScan(), kVehicleFromSensor));
   correction.setSensorPose(kVehicleFromSensor);
   correction.filter(of_vehicle);
   expectNear(of_vehicle, *moved(of_sensor, kVehicleFromSensor), 1e-4F);

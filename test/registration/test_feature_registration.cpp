@@ -1,5 +1,5 @@
 // The pose estimation in a furnished room.
-#include "registration/furnished_room.h"
+#include "registration/feature_registration_test.h"
 #include "support/random_motion.h"
 
 #include <pcl_floam/filters/core/sweep_motion.h>

@@ -1,5 +1,5 @@
 // The pose estimation of a sweep during which the sensor moves.
-#include "registration/furnished_room.h"
+#include "registration/feature_registration_test.h"
 
 #include <pcl_floam/filters/core/sweep_motion.h>
 

@@ -7,6 +7,7 @@
 #include <pcl_floam/common/point_types.h>
 #include <pcl_floam/filters/core/feature_extractor.h>
 
+#include <pcl/memory.h>
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/point_cloud.h>
 #include <pcl/type_traits.h>
@@ -27,6 +28,11 @@ inline pcl::PointCloud<PointXYZIRT> toCloud(const std::vector<Return>& returns, 
                                 static_cast<float>(period * r.fraction)));
   }
   return cloud;
+}
+
+inline pcl::PointCloud<PointXYZIRT>::Ptr scanOf(const Room& room)
+{
+  return pcl::make_shared<pcl::PointCloud<PointXYZIRT>>(toCloud(sweepRoom(room, Lidar())));
 }
 
 /// Positions alone.

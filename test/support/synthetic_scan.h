@@ -3,13 +3,12 @@
 #pragma once
 
 #include "support/constants.h"
-#include "support/room_scans.h"
+#include "support/room.h"
 
 #include <pcl_floam/common/se3.h>
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <vector>
 
 namespace pcl_floam::test {
@@ -33,27 +32,6 @@ struct Lidar {
     return clockwise ? start_azimuth - turned : start_azimuth + turned;
   }
   [[nodiscard]] double fraction(int column) const { return static_cast<double>(column) / (columns - 1); }
-};
-
-/// What the walls of a room and the boxes in it look like to rays.
-struct Room {
-  Box walls = {{-15.0, -9.0, -1.7}, {25.0, 11.0, 4.0}};
-  std::vector<Box> furniture = {{{3.0, 3.0, -1.7}, {5.0, 6.0, 1.0}},
-                                {{9.0, -6.0, -1.7}, {10.0, -3.0, 3.0}},
-                                {{-6.0, -5.0, -1.7}, {-4.0, -4.0, 2.0}},
-                                {{14.0, 4.0, -1.7}, {17.0, 5.0, 0.5}},
-                                {{-9.0, 5.0, -1.7}, {-8.0, 7.0, 3.5}}};
-
-  [[nodiscard]] double distance(const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) const
-  {
-    const double from[3] = {origin.x(), origin.y(), origin.z()};
-    const double along[3] = {ray.x(), ray.y(), ray.z()};
-    double nearest = distanceTo(walls, from, along, true);
-    for (const Box& box : furniture) {
-      nearest = std::min(nearest, distanceTo(box, from, along, false));
-    }
-    return nearest;
-  }
 };
 
 /// One measured point, and what is true about it.

@@ -1,4 +1,4 @@
-/// \file furnished_room.h
+/// \file feature_registration_test.h
 /// Features of a furnished room, registered with its map.
 #pragma once
 
