@@ -139,11 +139,6 @@ bool PreparedCloud::empty() const
   return pyramid_->empty();
 }
 
-double PreparedCloud::spacing() const
-{
-  return pyramid_->full().spacing;
-}
-
 RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,
                                   const CloudRegistrationRun& run)
 {

@@ -104,7 +104,7 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
   const FeatureKindProblem planes{source.planes, plane_weights, *problem.target.planes, fitPlane};
   findOfOneKind(problem, edges, trajectory, search_radius, stride, correspondences.edges);
   findOfOneKind(problem, planes, trajectory, search_radius, stride, correspondences.planes);
-  weighByScatter(plane_weights, kPlaneScatter, correspondences.planes);
+  weighByScatter(plane_weights, correspondences.planes);
 }
 
 }  // namespace pcl_floam

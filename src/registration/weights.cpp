@@ -55,13 +55,10 @@ std::vector<double> smoothnessWeights(const std::vector<Feature>& features, Feat
   return weights;
 }
 
-void weighByScatter(const std::vector<double>& weights, double scatter, std::vector<Correspondence>& planes)
+void weighByScatter(const std::vector<double>& weights, std::vector<Correspondence>& planes)
 {
   constexpr double kLeastVariance = 1e-6;  // m^2: no map is better than to a millimetre
-  if (!(scatter > 0.0)) {
-    return;
-  }
-  const double half = scatter * scatter * std::max(kLeastVariance, medianVariance(planes));
+  const double half = kPlaneScatter * kPlaneScatter * std::max(kLeastVariance, medianVariance(planes));
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (planes[i].weight > 0.0) {
       planes[i].weight = weights[i] * half / (half + planes[i].factor.variance);

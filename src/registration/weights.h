@@ -26,12 +26,11 @@ inline constexpr double kEdgeWeight = 0.12;
 /// planes.
 inline constexpr double kPlaneScatter = 2.0;
 
-/// Weighs each linked plane by W / (1 + v / (scatter^2 m)), where v is its variance and m the median of all.
+/// Weighs each linked plane by W / (1 + v / (kPlaneScatter^2 m)), where v is its variance and m the median of all.
 ///
 /// Five neighbours at the foot of a wall or a shelf are no plane, but tilt and lift the one that is fitted to them, and
 /// always to the same side: the floor has things standing on it, none hang below.
 /// \param weights W of Eq. 9, for each of the planes
-/// \param scatter as \ref kPlaneScatter; 0 leaves W
-void weighByScatter(const std::vector<double>& weights, double scatter, std::vector<Correspondence>& planes);
+void weighByScatter(const std::vector<double>& weights, std::vector<Correspondence>& planes);
 
 }  // namespace pcl_floam
