@@ -34,6 +34,17 @@ const char* toString(OdometryEngine engine)
   return "unknown";
 }
 
+const char* toString(CompensationMode mode)
+{
+  switch (mode) {
+    case CompensationMode::none: return "none";
+    case CompensationMode::two_stage: return "two-stage";
+    case CompensationMode::iterative: return "loam";
+    case CompensationMode::continuous: return "continuous";
+  }
+  return "unknown";
+}
+
 void validate(const OdometryParameters& p)
 {
   const ParameterCheck check("odometry");
