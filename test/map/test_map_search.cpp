@@ -145,6 +145,17 @@ TEST(MapSearch, ClustersOfTheMap)
   }
 }
 
+TEST(MapSearch, KnowsWhatItTook)
+{
+  EXPECT_EQ(MapSearch<Point>().getMap(), nullptr);
+  const KeyframeVoxelMap map = furnishedMap();
+  MapSearch<Point> search(map, FeatureKind::edge);
+  const auto taken = search.getMap();
+  EXPECT_EQ(taken->size(), map.size(FeatureKind::edge));
+  search.setInputCloud(pcl::make_shared<Cloud>(1, 1));
+  EXPECT_EQ(search.getMap(), taken);
+}
+
 TEST(MapSearch, ClustersAmongIndices)
 {
   const auto search = pcl::make_shared<MapSearch<Point>>(furnishedMap(), FeatureKind::edge);

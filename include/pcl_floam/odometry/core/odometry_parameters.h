@@ -47,7 +47,7 @@ struct OdometryParameters {
   RegistrationParameters registration;
   KeyframePolicy keyframe;
   MapParameters map;
-  int threads = 1;  ///< 1 to 1024; the result does not depend on it
+  int threads = 1;  ///< 1 to 1024, or 0: all processors; the result does not depend on it
   /// Work of a start, by surfaces, that one scan bears beside its own, in registrations of a scan: other motions are
   /// followed, sought and tried, and the first scans are gone through once more from the last ones. What is more is
   /// left to the scans that follow, whose poses are provisional until then. 2 to 1000; counted, not timed, so that the
