@@ -1,6 +1,7 @@
 #include <pcl_floam/registration/core/cloud_registration.h>
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 #include "registration/cloud_alignment.h"
 #include "registration/locked_motions.h"
 #include "registration/start_search.h"

@@ -69,9 +69,6 @@ struct SE3 {
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-/// The cross-product matrix: `skew(a) * b == a.cross(b)`.
-[[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& v);
-
 /// The rotation of angle |\p phi| rad about \p phi (Rodrigues).
 [[nodiscard]] Eigen::Matrix3d expSO3(const Eigen::Vector3d& phi);
 
@@ -83,12 +80,6 @@ struct SE3 {
 
 /// Inverse of \ref exp, as used in Eq. 2 and Eq. 12a; rotation part in [0, pi].
 [[nodiscard]] Vector6 log(const SE3& target_T_source);
-
-/// How a perturbation in the source's axes looks in the target's: t exp(xi) = exp(adjoint(t) xi) t.
-[[nodiscard]] Matrix6 adjoint(const SE3& t);
-
-/// A perturbation (t, w) about a point is (t + arm x w, w) about one that lies \p arm nearer.
-[[nodiscard]] Matrix6 leverOf(const Eigen::Vector3d& arm);
 
 /// The nearest proper rotation (in the Frobenius norm) to a matrix that rounding has bent.
 [[nodiscard]] Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m);

@@ -35,7 +35,8 @@ struct Surface {
   double width = 0.0;  ///< m^2: variance of the points along \ref wide; 0: not known
 };
 
-/// Where a registration looks for surfaces. One's own can be handed in, in place of a \ref KeyframeVoxelMap.
+/// Where a registration looks for surfaces. One's own is handed to an odometry as a \ref SurfaceMap
+/// (OdometryComponents::map), which adds keyframes, too.
 class SurfaceSearch {
 public:
   virtual ~SurfaceSearch() = default;
