@@ -1,13 +1,12 @@
 #include "benchmark/stage_benchmarks.h"
 
 #include "common/sweep_trajectory.h"
-#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 #include "filters/smoothness.h"
 #include "map/kdtree_search.h"
 #include "registration/correspondences.h"
+#include "registration/factors.h"
 #include "registration/information_analysis.h"
-#include "registration/line_plane_fit.h"
 #include "registration/normal_equations.h"
 
 #include <pcl_floam/filters/core/sweep_motion.h>

@@ -1,5 +1,5 @@
 // Planes weighed by how well the map's points lie on them.
-#include "registration/weights.h"
+#include "registration/correspondences.h"
 
 #include <gtest/gtest.h>
 
