@@ -10,17 +10,17 @@
 
 #include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/vertical_correction.h>
 #include <pcl_floam/io/scan_source.h>
 #include <pcl_floam/io/trajectory.h>
 
+#include <pcl/common/point_tests.h>
 #include <pcl/filters/voxel_grid.h>
 
 #include <chrono>
 #include <cmath>
 #include <fstream>
 #include <iostream>
-#include <limits>
 
 using namespace pcl_floam;
 using namespace pcl_floam::experiments;
@@ -64,14 +64,19 @@ void addOptions(CLI::App& app, Options& o)
 Cloud::Ptr thinned(const pcl::PCLPointCloud2& raw, const Options& o)
 {
   const CloudView view = viewOf(raw);
-  const double any_range = std::numeric_limits<float>::max();
-  std::vector<ScanPoint> points;
-  collectPoints({view, ScanLines(), ScanTiming(), o.min_range, any_range, o.vertical_correction}, points);
   Cloud::Ptr good(new Cloud);
-  for (const ScanPoint& point : points) {
-    good->push_back({point.x, point.y, point.z});
+  for (std::size_t i = 0; i < view.size; ++i) {
+    const pcl::PointXYZ point(view.x(i), view.y(i), view.z(i));
+    if (pcl::isXYZFinite(point) && point.getVector3fMap().norm() >= static_cast<float>(o.min_range)) {
+      good->push_back(point);
+    }
   }
+  VerticalCorrection<pcl::PointXYZ> correction;
+  correction.setInputCloud(good);
+  correction.setAngle(o.vertical_correction);
   Cloud::Ptr result(new Cloud);
+  correction.filter(*result);
+  good.swap(result);
   pcl::VoxelGrid<pcl::PointXYZ> grid;
   const auto leaf = static_cast<float>(o.leaf);
   grid.setLeafSize(leaf, leaf, leaf);

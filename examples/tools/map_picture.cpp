@@ -1,5 +1,7 @@
 #include "map_picture.h"
 
+#include "quantile.h"
+
 #include <pcl/io/png_io.h>
 
 #include <algorithm>
@@ -27,13 +29,6 @@ Eigen::Matrix3d viewRotation()
 {
   const Eigen::Matrix3d turned = Eigen::AngleAxisd(kTurn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   return Eigen::AngleAxisd(-(0.5 * M_PI - kSlant), Eigen::Vector3d::UnitX()).toRotationMatrix() * turned;
-}
-
-double quantile(std::vector<double> values, double part)
-{
-  const auto place = static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
 }
 
 /// Blue at the bottom, by green and yellow, to red at the top.

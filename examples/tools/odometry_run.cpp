@@ -81,7 +81,7 @@ public:
     }
     return stamps;
   }
-  [[nodiscard]] const OdometryParameters& parameters() const { return odometry_.parameters(); }
+  [[nodiscard]] const OdometryParameters& parameters() const { return odometry_.getParameters(); }
   [[nodiscard]] pcl::PCLPointCloud2& cloud() { return cloud_; }
 
 private:
@@ -146,7 +146,7 @@ private:
     } else if (!report.reason.empty()) {
       progress_.message(file + ": " + report.reason);
     }
-    const ScanTimingSource asked = odometry_.parameters().timing_source;
+    const ScanTimingSource asked = odometry_.getParameters().timing_source;
     if (result_.times.size() == 1 && report.timing_source == ScanTimingSource::none &&
         asked != ScanTimingSource::automatic && asked != ScanTimingSource::none) {
       progress_.message(file +
@@ -231,7 +231,7 @@ RunResult runOdometry(OdometryPipeline& odometry, const ScanSource& scans, ScanR
   if (!times_problem.empty()) {
     progress.message(times_problem);
   }
-  PoseClock clock(odometry.parameters().scan_period, range.first);
+  PoseClock clock(odometry.getParameters().scan_period, range.first);
   const auto unlessDiskIsFull = [&](const auto& step) {
     try {
       step();

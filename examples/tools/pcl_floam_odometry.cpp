@@ -108,7 +108,7 @@ struct Preparation {
       odometry.setSensorPose(sensorPose(options.sensor_pose));
     }
     if (!options.map.empty()) {
-      odometry.localizeIn(loadMap(options.map, odometry.parameters().map), initialPose(options.initial_pose),
+      odometry.localizeIn(loadMap(options.map, odometry.getParameters().map), initialPose(options.initial_pose),
                           options.localize ? MapUse::frozen : MapUse::kept_current);
     }
     refuseToWriteAmong(scans, options.output);

@@ -116,9 +116,9 @@ Json toJson(const RunSummary& summary)
   if (summary.accuracy) {
     json["accuracy"] = toJson(*summary.accuracy);
     json["accuracy"]["ground_truth"] = summary.options.ground_truth.string();
-    json["accuracy"]["vertical_correction_deg"] = summary.odometry.parameters().vertical_correction;
+    json["accuracy"]["vertical_correction_deg"] = summary.odometry.getParameters().vertical_correction;
   }
-  json["settings"] = toJson(summary.odometry.parameters());
+  json["settings"] = toJson(summary.odometry.getParameters());
   json["sensor_pose"] = matrixOf(summary.odometry.getSensorPose());
   return json;
 }
@@ -145,7 +145,7 @@ std::string describe(const RunSummary& summary)
   text += formatted("\n%-22s %.1f m", "path", pathLength(result.poses));
   if (summary.accuracy) {
     text += "\n" + describe(*summary.accuracy);
-    text += formatted("\n%-22s %g deg", "vertical correction", summary.odometry.parameters().vertical_correction);
+    text += formatted("\n%-22s %g deg", "vertical correction", summary.odometry.getParameters().vertical_correction);
   }
   text += formatted("\n%-22s %s", "results in", summary.options.output.c_str());
   return text;

@@ -93,12 +93,4 @@ Matrix12 inBlocks(const Matrix6& top_left, const Matrix6& top_right, const Matri
   return all;
 }
 
-Matrix6 turnOf(const Eigen::Matrix3d& rotation)
-{
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = rotation;
-  turn.bottomRightCorner<3, 3>() = rotation;
-  return turn;
-}
-
 }  // namespace pcl_floam

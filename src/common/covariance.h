@@ -28,7 +28,4 @@ using Vector12 = Eigen::Matrix<double, 12, 1, Eigen::DontAlign>;
 [[nodiscard]] Matrix12 inBlocks(const Matrix6& top_left, const Matrix6& top_right, const Matrix6& bottom_left,
                                 const Matrix6& bottom_right);
 
-/// Turns perturbations (translation, rotation) about a point into other axes.
-[[nodiscard]] Matrix6 turnOf(const Eigen::Matrix3d& rotation);
-
 }  // namespace pcl_floam

@@ -1,8 +1,10 @@
 #include <pcl_floam/common/se3.h>
 
-#include <algorithm>
-#include <cmath>
+#include "common/perturbation.h"
+
 #include <Eigen/SVD>
+
+#include <cmath>
 
 namespace pcl_floam {
 
@@ -42,13 +44,6 @@ bool SE3::isFinite() const
 SE3 operator*(const SE3& a, const SE3& b)
 {
   return {a.rotation * b.rotation, a * b.translation};
-}
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v)
-{
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
 }
 
 Eigen::Matrix3d expSO3(const Eigen::Vector3d& phi)
@@ -95,22 +90,6 @@ Vector6 log(const SE3& target_T_source)
   xi.head<3>() = leftJacobian(phi).inverse() * target_T_source.translation;
   xi.tail<3>() = phi;
   return xi;
-}
-
-Matrix6 adjoint(const SE3& t)
-{
-  Matrix6 a = Matrix6::Zero();
-  a.topLeftCorner<3, 3>() = t.rotation;
-  a.bottomRightCorner<3, 3>() = t.rotation;
-  a.topRightCorner<3, 3>() = skew(t.translation) * t.rotation;
-  return a;
-}
-
-Matrix6 leverOf(const Eigen::Vector3d& arm)
-{
-  Matrix6 lever = Matrix6::Identity();
-  lever.topRightCorner<3, 3>() = skew(arm);
-  return lever;
 }
 
 Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m)

@@ -93,17 +93,6 @@ void SweepTrajectory::undistort(Batch& points) const
   addOrders(orders_, motion, points, term);
 }
 
-Eigen::Vector3d SweepTrajectory::at(const Eigen::Vector3d& point, double time) const
-{
-  Batch one{};
-  one.since[0] = sinceReference(time);
-  one.x[0] = point.x();
-  one.y[0] = point.y();
-  one.z[0] = point.z();
-  undistort(one);
-  return pose_ * Eigen::Vector3d(one.x[0], one.y[0], one.z[0]);
-}
-
 SweepTrajectory SweepTrajectory::perturbed(const Vector6& delta) const
 {
   SE3 pose = exp(delta) * pose_;

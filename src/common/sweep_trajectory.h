@@ -61,9 +61,6 @@ public:
     }
   }
 
-  /// The place of one point in the target's frame, measured at a fraction of the sweep in [0, 1].
-  [[nodiscard]] Eigen::Vector3d at(const Eigen::Vector3d& point, double time) const;
-
   /// The trajectory perturbed on the left by \p delta at the reference instant.
   [[nodiscard]] SweepTrajectory perturbed(const Vector6& delta) const;
 

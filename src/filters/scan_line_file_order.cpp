@@ -1,6 +1,6 @@
 // Scan lines that follow each other in the cloud, one turn of the sensor after the other.
+#include "common/azimuth.h"
 #include "common/multi_version.h"
-#include "filters/azimuth.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Scan lines that the cloud's fields and layout tell: ring field, organised rows.
+#include "common/azimuth.h"
 #include "common/field_type.h"
-#include "filters/azimuth.h"
 #include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 

@@ -2,7 +2,7 @@
 /// The neighbours of a scan's returns, on their scan line and on the next ones.
 #pragma once
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/core/scan_point.h>
 
 #include <Eigen/Core>
 

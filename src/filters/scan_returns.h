@@ -1,14 +1,34 @@
 /// \file scan_returns.h
-/// The returns of a scan, some at a time.
+/// The returns of a scan, all or some at a time.
 #pragma once
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/common/core/cloud_view.h>
+#include <pcl_floam/filters/core/scan_point.h>
+#include <pcl_floam/filters/core/scan_timing.h>
+#include <pcl_floam/filters/scan_lines.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace pcl_floam {
+
+/// All returns of a scan between two distances from the sensor, line after line; without scan lines in the cloud's
+/// order. It refers to what it is made of.
+struct ScanReturns {
+  const CloudView& cloud;
+  const ScanLines& lines;
+  const ScanTiming& timing;
+  double min_range;            ///< m
+  double max_range;            ///< m
+  double vertical_correction;  ///< degrees by which every point is turned up
+
+  [[nodiscard]] bool areAtLeast(std::size_t count) const;
+};
+
+/// \param[out] points overwritten; its memory is reused
+void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Returns of one scan line that follow each other (of any, without scan lines): enough to make loops over them worth
 /// while, and few enough to stay in the first cache.

@@ -1,8 +1,9 @@
 #include <pcl_floam/filters/core/scan_timing.h>
 
+#include "common/azimuth.h"
 #include "common/field_type.h"
 #include "common/multi_version.h"
-#include "filters/azimuth.h"
+#include "common/pi.h"
 #include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
 

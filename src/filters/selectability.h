@@ -2,7 +2,6 @@
 /// Which points of a scan line could be features, by where they lie in it.
 #pragma once
 
-#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 
 #include <pcl_floam/filters/core/feature_parameters.h>

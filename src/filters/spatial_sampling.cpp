@@ -1,9 +1,8 @@
+#include "filters/spatial_sampling.h"
+
 #include "common/hash.h"
 #include "common/multi_version.h"
 #include "filters/point_times.h"
-#include "filters/scan_returns.h"
-
-#include <pcl_floam/filters/core/scan_points.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+#include "filters/straight_runs.h"
+
 #include "filters/scan_neighbors.h"
 
 #include <Eigen/Core>

@@ -2,24 +2,13 @@
 
 #include "common/sweep_trajectory.h"
 
-#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/pose_instant.h>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
 
 namespace pcl_floam {
-
-const char* toString(CompensationMode mode)
-{
-  switch (mode) {
-    case CompensationMode::none: return "none";
-    case CompensationMode::two_stage: return "two-stage";
-    case CompensationMode::iterative: return "loam";
-    case CompensationMode::continuous: return "continuous";
-  }
-  return "unknown";
-}
 
 const char* toString(PoseInstant instant)
 {

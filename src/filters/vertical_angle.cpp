@@ -3,7 +3,9 @@
 #include "common/multi_version.h"
 #include "common/pi.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 namespace pcl_floam {
@@ -56,11 +58,18 @@ void correctVerticalAngle(double degrees, FeatureSet& features)
   }
 }
 
-void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y, float* z)
+void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y, float* z, int threads)
 {
-  if (degrees != 0.0) {
-    const Turn turn(degrees);
-    turnUp(turn.sine, turn.cosine, count, x, y, z);
+  constexpr std::size_t kChunk = 4096;
+  if (degrees == 0.0) {
+    return;
+  }
+  const Turn turn(degrees);
+  const auto chunks = static_cast<std::ptrdiff_t>((count + kChunk - 1) / kChunk);
+#pragma omp parallel for num_threads(threads) schedule(static)
+  for (std::ptrdiff_t chunk = 0; chunk < chunks; ++chunk) {
+    const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
+    turnUp(turn.sine, turn.cosine, std::min(kChunk, count - first), x + first, y + first, z + first);
   }
 }
 

@@ -36,7 +36,6 @@ Surface lineThrough(const Neighbors& edges, const Eigen::Vector3d& place)
     line.thickness = across;
     line.extent = axes.variance[2];
     line.count = kEdges;
-    line.size = 2.0 * kRadius;
   }
   return line;
 }
@@ -45,14 +44,11 @@ Surface lineThrough(const Neighbors& edges, const Eigen::Vector3d& place)
 
 EdgeLines::EdgeLines() : layer_(std::make_unique<VoxelLayer>(kVoxel)) {}
 
-EdgeLines::EdgeLines(const EdgeLines& other) : SurfaceMap(other), layer_(std::make_unique<VoxelLayer>(*other.layer_)) {}
-
-std::unique_ptr<SurfaceMap> EdgeLines::makeEmpty(double /*side*/) const
+EdgeLines::EdgeLines(const EdgeLines& other) : SurfaceSearch(other), layer_(std::make_unique<VoxelLayer>(*other.layer_))
 {
-  return std::make_unique<EdgeLines>();
 }
 
-void EdgeLines::insert(const Eigen::Vector3d* places, const std::uint32_t* /*lasers*/, std::size_t count)
+void EdgeLines::insert(const Eigen::Vector3d* places, std::size_t count)
 {
   layer_->insertEach(places, count);
 }

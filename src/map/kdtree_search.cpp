@@ -70,26 +70,4 @@ void KdTreeSearch::nearest(const Eigen::Vector3d& query, int k, double radius, N
   }
 }
 
-void KdTreeSearch::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const
-{
-  neighbors.clear();
-  if (!query.allFinite() || index_->tree == nullptr) {
-    return;
-  }
-  Eigen::Vector3f relative = (query - index_->origin).cast<float>();
-  std::vector<std::vector<std::size_t>> indices;
-  std::vector<std::vector<float>> distances;
-  index_->tree->radiusSearch(flann::Matrix<float>(relative.data(), 1, 3), indices, distances,
-                             static_cast<float>(radius * radius), kExact);
-  for (std::size_t i = 0; i < indices[0].size(); ++i) {
-    const Eigen::Vector3f point = Eigen::Map<const Eigen::Vector3f>(&index_->coordinates[3 * indices[0][i]]);
-    neighbors.push_back({Eigen::Vector3f(point - relative), distances[0][i]});
-  }
-}
-
-std::unique_ptr<NeighborSearch> makeKdTreeSearch(const std::vector<Eigen::Vector3d>& points)
-{
-  return std::make_unique<KdTreeSearch>(points);
-}
-
 }  // namespace pcl_floam

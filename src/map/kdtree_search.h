@@ -14,14 +14,13 @@ namespace pcl_floam {
 /// A KD-tree over a fixed set of points.
 class KdTreeSearch : public NeighborSearch {
 public:
-  /// \param points finite, in the world frame; may be empty
+  /// \param points world frame, m; those that are not finite are left out; may be empty
   explicit KdTreeSearch(const std::vector<Eigen::Vector3d>& points);
   ~KdTreeSearch() override;
 
   [[nodiscard]] bool empty() const override;
 
   void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
-  void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
 
 private:
   struct Index;

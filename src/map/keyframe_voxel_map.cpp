@@ -168,7 +168,7 @@ std::vector<float> KeyframeVoxelMap::intensities(FeatureKind kind) const
   return impl_->layer(kind).intensities();
 }
 
-const MapParameters& KeyframeVoxelMap::parameters() const
+const MapParameters& KeyframeVoxelMap::getParameters() const
 {
   return impl_->parameters;
 }

@@ -1,6 +1,6 @@
 #include "map/range_image.h"
 
-#include "filters/azimuth.h"
+#include "common/azimuth.h"
 
 #include <algorithm>
 #include <cmath>

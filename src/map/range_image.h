@@ -12,9 +12,6 @@ namespace pcl_floam {
 /// The nearest return of a scan in each of a grid of directions, about 0.7 degrees apart.
 class RangeImage {
 public:
-  RangeImage() = default;
-  explicit RangeImage(const std::vector<Eigen::Vector3f>& points) { take(points); }
-
   /// Another scan, in the same memory.
   /// \param points in the sensor's frame, m; ones that are not finite are left out
   void take(const std::vector<Eigen::Vector3f>& points);

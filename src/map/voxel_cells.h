@@ -92,7 +92,6 @@ public:
     int level = 0;
   };
 
-  [[nodiscard]] std::size_t used() const { return cells_.used(); }
   [[nodiscard]] const Cell& operator[](std::uint32_t cell) const { return cells_[cell]; }
   [[nodiscard]] const Content& content(std::uint32_t cell) const { return contents_[cell]; }
   /// The points of a finest cell.

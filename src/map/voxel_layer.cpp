@@ -104,11 +104,6 @@ std::int32_t VoxelLayer::findOrAddBlock(const VoxelKey& key)
   return added;
 }
 
-void VoxelLayer::insert(const Eigen::Vector3d& point)
-{
-  insertEach(&point, 1);
-}
-
 void VoxelLayer::insertMean(const Eigen::Vector3d& point, float intensity)
 {
   BlockQuery place;

@@ -29,18 +29,15 @@ public:
   VoxelLayer& operator=(const VoxelLayer& other) = delete;
   ~VoxelLayer() override = default;
 
-  /// Adds a point in the world frame; points of one voxel are averaged. One that is not finite, or more than a
-  /// billion blocks away, is left out. Blocks that are a million apart in a row, hundreds of kilometres, are taken for
-  /// one.
-  void insert(const Eigen::Vector3d& point);
-
-  /// \ref insert for \p count points, in their order; fetches for the later ones while it works on the first.
+  /// Adds points in the world frame, in their order; those of one voxel are averaged. One that is not finite, or more
+  /// than a billion blocks away, is left out. Blocks that are a million apart in a row, hundreds of kilometres, are
+  /// taken for one. Fetches for the later ones while it works on the first.
   /// \param threads >= 1; the layer does not depend on it
   /// \param intensities \p count of them; nullptr: zeros
   void insertEach(const Eigen::Vector3d* points, std::size_t count, int threads = 1,
                   const float* intensities = nullptr);
 
-  /// \ref insert for a point that stands for many, as those of a saved map do.
+  /// Adds a point that stands for many, as those of a saved map do.
   void insertMean(const Eigen::Vector3d& point, float intensity = 0.0F);
 
   /// Forgets the blocks whose centre is farther than \p radius from \p center.
@@ -64,7 +61,6 @@ public:
   void nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const override;
   void nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
                      Neighbors* neighbors) const override;
-  void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const override;
 
 private:
   /// A query in the frame of one block: where blocks and their points are seen from it.
@@ -90,10 +86,8 @@ private:
   /// \param home the query's own block, or kNone
   void searchAround(const BlockQuery& query, std::int32_t home, NearestSoFar& nearest) const;
 
-  /// Calls \p visit(offset of the block's corner from the query, block) for the blocks within \p radius, nearest
-  /// ring first; \p squaredLimit is asked anew before each block, so that the caller can narrow the search.
-  template <typename Limit, typename Visit>
-  void visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const;
+  /// The k nearest, farther than that: among all blocks within \p radius, nearest ring first.
+  void searchWide(const BlockQuery& query, double radius, NearestSoFar& nearest) const;
 
   int voxels_per_axis_;
   float inverse_voxel_size_;

@@ -71,17 +71,16 @@ void VoxelLayer::searchAround(const BlockQuery& query, std::int32_t home, Neares
   }
 }
 
-template <typename Limit, typename Visit>
-void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit& squaredLimit, Visit&& visit) const
+void VoxelLayer::searchWide(const BlockQuery& query, double radius, NearestSoFar& nearest) const
 {
   const auto size = static_cast<float>(block_size_);
-  const auto visitOne = [&](const VoxelKey& key, const VoxelBlock* block) {
+  const auto search = [&](const VoxelKey& key, const VoxelBlock* block) {
     const Eigen::Vector3f corner(static_cast<float>(static_cast<double>(key.x) - query.key.x) * size,
                                  static_cast<float>(static_cast<double>(key.y) - query.key.y) * size,
                                  static_cast<float>(static_cast<double>(key.z) - query.key.z) * size);
     if (squaredGap(query.offset.x(), corner.x(), size) + squaredGap(query.offset.y(), corner.y(), size) +
             squaredGap(query.offset.z(), corner.z(), size) >
-        squaredLimit()) {
+        nearest.limit()) {
       return;
     }
     const std::int32_t found = block == nullptr ? findBlock(key) : VoxelBlock::kNone;
@@ -89,14 +88,14 @@ void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit
       block = &blocks_[static_cast<std::size_t>(found)];
     }
     if (block != nullptr) {
-      visit(Eigen::Vector3f(corner - query.offset), *block);
+      block->search(corner - query.offset, nearest);
     }
   };
   const double reach = std::ceil(radius / block_size_);
   if (std::pow(2.0 * reach + 1.0, 3.0) >= static_cast<double>(numbers_.size())) {
     for (const VoxelBlock& block : blocks_) {  // fewer blocks than places where one could be
       if (block.isUsed()) {
-        visitOne(block.key, &block);
+        search(block.key, &block);
       }
     }
     return;
@@ -107,7 +106,7 @@ void VoxelLayer::visitBlocks(const BlockQuery& query, double radius, const Limit
         // Inside the shell's faces only the two ends of the row belong to this ring.
         const bool on_face = std::abs(dz) == ring || std::abs(dy) == ring;
         for (int dx = -ring; dx <= ring; dx += on_face ? 1 : 2 * ring) {
-          visitOne({query.key.x + dx, query.key.y + dy, query.key.z + dz}, nullptr);
+          search({query.key.x + dx, query.key.y + dy, query.key.z + dz}, nullptr);
         }
       }
     }
@@ -125,9 +124,7 @@ void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Nei
   if (radius <= block_size_) {
     searchAround(place, findBlock(place.key), nearest);
   } else {
-    visitBlocks(
-        place, radius, [&] { return nearest.limit(); },
-        [&](const Eigen::Vector3f& corner, const VoxelBlock& block) { block.search(corner, nearest); });
+    searchWide(place, radius, nearest);
   }
   nearest.write(neighbors, &VoxelBlock::point);
 }
@@ -171,26 +168,6 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
       }
     }
   }
-}
-
-void VoxelLayer::within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const
-{
-  neighbors.clear();
-  BlockQuery place;
-  if (!findPlace(query, place)) {
-    return;
-  }
-  const auto limit = static_cast<float>(radius * radius);
-  visitBlocks(
-      place, radius, [limit] { return limit; },
-      [&](const Eigen::Vector3f& corner, const VoxelBlock& block) {
-        for (std::size_t i = 0; i < block.size(); ++i) {
-          const Eigen::Vector3f offset = corner + block.point(i);
-          if (offset.squaredNorm() <= limit) {
-            neighbors.push_back({offset, offset.squaredNorm()});
-          }
-        }
-      });
 }
 
 }  // namespace pcl_floam

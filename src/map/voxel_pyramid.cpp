@@ -36,12 +36,6 @@ bool VoxelPyramid::findPlace(const Eigen::Vector3d& point, Place& place) const
   return true;
 }
 
-bool VoxelPyramid::insert(const Eigen::Vector3d& point, std::uint32_t laser)
-{
-  Place place;
-  return findPlace(point, place) && insert(place, cells_.find(place.key, 0), laser);
-}
-
 /// Some at a time, as in \ref find.
 void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count)
 {
@@ -75,21 +69,16 @@ void VoxelPyramid::insert(const Eigen::Vector3d* places, const std::uint32_t* la
 }
 
 /// \param cell the finest one there; 0: there is none yet
-bool VoxelPyramid::insert(const Place& place, std::uint32_t cell, std::uint32_t laser)
+void VoxelPyramid::insert(const Place& place, std::uint32_t cell, std::uint32_t laser)
 {
   if (cell == 0) {
     cell = cells_.make(place.key);
   }
-  if (cells_[cell].count >= kPointsPerLeaf) {
-    return false;
-  }
   const Eigen::Vector3f point = place.offset.cast<float>();
-  if (isNear(cells_.leaf(cell), point)) {
-    return false;
+  if (cells_[cell].count < kPointsPerLeaf && !isNear(cells_.leaf(cell), point)) {
+    cells_.add(cell, point, laser);
+    ++points_;
   }
-  cells_.add(cell, point, laser);
-  ++points_;
-  return true;
 }
 
 void VoxelPyramid::crop(const Eigen::Vector3d& center, double radius)

@@ -27,7 +27,6 @@ public:
 
   [[nodiscard]] double side() const { return side_; }
   [[nodiscard]] std::size_t size() const { return points_; }
-  [[nodiscard]] std::size_t cells() const { return cells_.used(); }
 
   [[nodiscard]] std::unique_ptr<SurfaceMap> makeEmpty(double side) const override
   {
@@ -35,15 +34,13 @@ public:
   }
   [[nodiscard]] std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<VoxelPyramid>(*this); }
 
-  /// Takes the point in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
-  bool insert(const Eigen::Vector3d& place, std::uint32_t laser);
+  /// Takes each in unless its finest cell is full or has one nearer than the spacing of a full cell's points.
   void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override;
 
   [[nodiscard]] bool empty() const override { return points_ == 0; }
-  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
 
-  /// The surface at a place: of the finest cell around it that several lasers have seen a shape in.
-  [[nodiscard]] Surface surfaceAt(const Eigen::Vector3d& place) const;
+  /// At each place that of the finest cell around it that several lasers have seen a shape in.
+  void find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const override;
 
   /// Drops the blocks whose centres are farther from \p center than \p radius.
   void crop(const Eigen::Vector3d& center, double radius) override;
@@ -76,7 +73,7 @@ private:
   bool findPlace(const Eigen::Vector3d& point, Place& place) const;
   [[nodiscard]] Eigen::Vector3d centerOfBlock(const VoxelKey& block) const;
   [[nodiscard]] Eigen::Vector3f centerOf(const Place& place, int level) const;
-  bool insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
+  void insert(const Place& place, std::uint32_t finest, std::uint32_t laser);
   [[nodiscard]] bool isOfNow(const VoxelCells::Cell& cell, std::uint8_t state) const;
   [[nodiscard]] std::uint8_t versionAround(const VoxelCells::Cell& cell) const;
   Fit fitOf(Found found, CellFit& own) const;

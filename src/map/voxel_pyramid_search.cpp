@@ -88,13 +88,6 @@ VoxelPyramid::Fit VoxelPyramid::fitOf(Found found, CellFit& own) const
   return {own.kind, own.shape, own.along};
 }
 
-Surface VoxelPyramid::surfaceAt(const Eigen::Vector3d& point) const
-{
-  Surface surface;
-  find(&point, 1, &surface);
-  return surface;
-}
-
 void VoxelPyramid::surfaceAt(const Place& place, Found found, Surface& surface) const
 {
   CellFit own;
@@ -114,7 +107,6 @@ void VoxelPyramid::surfaceIn(Found found, const Place& place, const Fit& fit, Su
   const Eigen::Vector3d block = centerOfBlock(place.block());
   surface.kind = fit.kind;
   surface.count = cells_[found.cell].count;
-  surface.size = sideOf(found.level);
   if (fit.kind == SurfaceKind::point) {
     Nearest nearest;
     findNearest(found, centerOf(place, found.level), place.offset.cast<float>(), nearest);

@@ -1,5 +1,7 @@
 #include "motion/motion_estimate.h"
 
+#include "common/perturbation.h"
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,7 @@
 #include <pcl_floam/motion/motion_hint.h>
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 
 #include <Eigen/Cholesky>
 

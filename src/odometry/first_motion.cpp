@@ -1,6 +1,7 @@
 #include "odometry/first_motion.h"
 
 #include "common/side_by_side.h"
+#include "filters/spatial_sampling.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -1,6 +1,7 @@
 #include "odometry/first_scans.h"
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 #include "odometry/start.h"
 
 #include <algorithm>

@@ -87,7 +87,7 @@ bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPos
   constexpr int kKeyframesBetween = 7;
   const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
   if (is_keyframe) {
-    if (map_.parameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
+    if (map_.getParameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
       scan.takePoints(cloud, parameters);
       undistort(scan.points, world_T_sensor, parameters.threads, all_undistorted_);
       map_.forgetSeenThrough(all_undistorted_, world_T_sensor.middle, parameters.threads);

@@ -4,6 +4,7 @@
 #include "odometry/sensor_frame.h"
 #include "odometry/surface_odometry.h"
 
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/odometry/odometry.h>
 
 #include <algorithm>
@@ -34,12 +35,23 @@ const char* toString(OdometryEngine engine)
   return "unknown";
 }
 
+const char* toString(CompensationMode mode)
+{
+  switch (mode) {
+    case CompensationMode::none: return "none";
+    case CompensationMode::two_stage: return "two-stage";
+    case CompensationMode::iterative: return "loam";
+    case CompensationMode::continuous: return "continuous";
+  }
+  return "unknown";
+}
+
 void validate(const OdometryParameters& p)
 {
   const ParameterCheck check("odometry");
   check.range("vertical_correction", p.vertical_correction, -10.0, 10.0);
   check.atLeast("scan_period", p.scan_period, 0.0);
-  check.range("threads", p.threads, 1, 1024);
+  check.range("threads", p.threads, 0, 1024);
   check.range("start_effort", p.start_effort, 2, 1000);
   check.atLeast("keyframe translation", p.keyframe.translation, 0.0);
   if (!p.sensor.has_scan_lines && p.engine == OdometryEngine::features) {
@@ -115,7 +127,9 @@ private:
 OdometryPipeline::OdometryPipeline(const OdometryParameters& parameters)
 {
   validate(parameters);
-  impl_ = std::make_unique<Impl>(parameters, OdometryComponents());
+  OdometryParameters resolved = parameters;
+  resolved.threads = threadCount(static_cast<unsigned int>(parameters.threads));
+  impl_ = std::make_unique<Impl>(resolved, OdometryComponents());
 }
 
 OdometryPipeline::OdometryPipeline(const OdometryPipeline& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}
@@ -169,7 +183,7 @@ const KeyframeVoxelMap& OdometryPipeline::map() const
   return impl_->of().map_building.map();
 }
 
-const OdometryParameters& OdometryPipeline::parameters() const
+const OdometryParameters& OdometryPipeline::getParameters() const
 {
   return impl_->of().parameters;
 }
@@ -197,7 +211,7 @@ void OdometryPipeline::setComponents(const OdometryComponents& components)
   if (std::any_of(components.factors.begin(), components.factors.end(), isNull)) {
     throw std::invalid_argument("odometry: a factor is null");
   }
-  if (parameters().engine == OdometryEngine::features && (components.map || components.select_points)) {
+  if (getParameters().engine == OdometryEngine::features && (components.map || components.select_points)) {
     throw std::invalid_argument("odometry: the engine 'features' registers features with its own map");
   }
   impl_ = impl_->again(components, impl_->frame, SE3());
@@ -208,7 +222,7 @@ void OdometryPipeline::setSensorPose(const SE3& frame_T_sensor)
   if (!frame_T_sensor.isFinite()) {
     throw std::invalid_argument("the sensor's pose is not finite");
   }
-  const DegreesOfFreedom& locked = parameters().registration.locked;
+  const DegreesOfFreedom& locked = getParameters().registration.locked;
   const bool any = std::any_of(locked.begin(), locked.end(), [](bool is_locked) { return is_locked; });
   if (any && rotationAngle(frame_T_sensor.rotation) > 0.0) {
     throw std::invalid_argument("locked degrees of freedom are the sensor's: its axes must be those of the frame");

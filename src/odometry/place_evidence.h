@@ -2,7 +2,7 @@
 /// How well motions explain a sweep, place by place: the judge between them.
 #pragma once
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/core/scan_point.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -5,9 +5,9 @@
 #include "filters/feature_selection.h"
 #include "filters/isolated_returns.h"
 #include "filters/line_grouping.h"
+#include "filters/scan_returns.h"
 
 #include <pcl_floam/filters/core/features.h>
-#include <pcl_floam/filters/core/scan_points.h>
 #include <pcl_floam/odometry/core/odometry_parameters.h>
 #include <pcl_floam/odometry/core/odometry_report.h>
 

@@ -2,13 +2,13 @@
 /// Scans that come twice, as drivers and recordings that stumble give them.
 #pragma once
 
+#include "common/hash.h"
+
 #include <pcl_floam/common/core/cloud_view.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 
 namespace pcl_floam {
@@ -29,20 +29,13 @@ public:
   }
 
 private:
-  /// FNV-1a.
   static std::uint64_t hashOfSome(const CloudView& scan)
   {
     constexpr std::size_t kSome = 256;
-    constexpr std::uint64_t kPrime = 0x100000001B3U;
-    std::uint64_t hash = 0xCBF29CE484222325U;
+    std::uint64_t hash = 0;
     const std::size_t stride = std::max<std::size_t>(1, scan.size / kSome);
     for (std::size_t i = 0; i < scan.size; i += stride) {
-      const std::array<float, 3> place = {scan.x(i), scan.y(i), scan.z(i)};
-      std::array<std::uint32_t, 3> bits;
-      std::memcpy(bits.data(), place.data(), sizeof(bits));
-      for (const std::uint32_t word : bits) {
-        hash = (hash ^ word) * kPrime;
-      }
+      hash = hashOf(hash ^ keyOf({scan.x(i), scan.y(i), scan.z(i)}), 0);
     }
     return hash;
   }

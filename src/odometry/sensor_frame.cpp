@@ -1,6 +1,7 @@
 #include "odometry/sensor_frame.h"
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 
 namespace pcl_floam {
 

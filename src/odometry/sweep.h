@@ -4,7 +4,7 @@
 
 #include "registration/pose_factors.h"
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/core/scan_point.h>
 #include <pcl_floam/motion/motion_hint.h>
 
 #include <cstdint>

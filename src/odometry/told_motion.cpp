@@ -1,6 +1,7 @@
 #include "odometry/told_motion.h"
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 #include "odometry/first_motion.h"
 
 #include <Eigen/Eigenvalues>

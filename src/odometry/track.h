@@ -6,7 +6,6 @@
 #include "motion/sweep_pose.h"
 #include "odometry/place_search.h"
 #include "odometry/sweep.h"
-#include "odometry/track_keyframes.h"
 #include "odometry/track_map.h"
 #include "odometry/track_settings.h"
 #include "odometry/usual_explanation.h"
@@ -120,5 +119,8 @@ private:
   bool is_placed_ = false;  ///< by somebody, roughly
   double evidence_ = 0.0;
 };
+
+/// Those of some poses, in the order of time, at which a map takes in the sweeps.
+[[nodiscard]] std::vector<bool> keyframesAmong(const std::vector<SweepPose>& poses, const TrackSettings& settings);
 
 }  // namespace pcl_floam

@@ -17,19 +17,20 @@ namespace pcl_floam {
 
 namespace {
 
-void insertInto(SurfaceMap& map, const std::vector<ScanPoint>& points, const SweepTrajectory& sensor)
+constexpr std::size_t kTogether = 256;
+
+/// Calls \p take(points, their places in the map, how many) for some at a time.
+template <typename Take>
+void placeEach(const std::vector<ScanPoint>& points, const SweepTrajectory& sensor, const Take& take)
 {
-  constexpr std::size_t kTogether = 256;
   std::array<Eigen::Vector3d, kTogether> places;
-  std::array<std::uint32_t, kTogether> lasers;
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
     const std::size_t count = std::min(kTogether, points.size() - begin);
     sensor.undistorted(&points[begin], 1, count, places.data());
     for (std::size_t i = 0; i < count; ++i) {
       places[i] = sensor.pose() * places[i];
-      lasers[i] = points[begin + i].laser;
     }
-    map.insert(places.data(), lasers.data(), count);
+    take(&points[begin], places.data(), count);
   }
 }
 
@@ -98,18 +99,23 @@ void TrackMap::clear()
 void TrackMap::insert(const Sweep& sweep, const SweepPose& pose)
 {
   const SweepTrajectory sensor(pose.middle, pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
-  insertInto(*space_, sweep.dense, sensor);
-  insertInto(edges_, sweep.edges, sensor);
+  placeEach(sweep.dense, sensor, [&](const ScanPoint* points, const Eigen::Vector3d* places, std::size_t count) {
+    std::array<std::uint32_t, kTogether> lasers;
+    std::transform(points, points + count, lasers.begin(), [](const ScanPoint& point) { return point.laser; });
+    space_->insert(places, lasers.data(), count);
+  });
+  placeEach(sweep.edges, sensor,
+            [&](const ScanPoint*, const Eigen::Vector3d* places, std::size_t count) { edges_.insert(places, count); });
   space_->crop(pose.middle.translation, horizon_);
   edges_.crop(pose.middle.translation, horizon_);
 }
 
 void TrackMap::insert(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges)
 {
-  std::vector<std::uint32_t> lasers(space.size() + edges.size());
+  std::vector<std::uint32_t> lasers(space.size());
   std::iota(lasers.begin(), lasers.end(), 0U);
   space_->insert(space.data(), lasers.data(), space.size());
-  edges_.insert(edges.data(), lasers.data() + space.size(), edges.size());
+  edges_.insert(edges.data(), edges.size());
 }
 
 }  // namespace pcl_floam

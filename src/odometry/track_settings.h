@@ -2,7 +2,7 @@
 /// What all tracks of an odometry have in common.
 #pragma once
 
-#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/odometry/core/odometry_parameters.h>
 #include <pcl_floam/odometry/odometry_components.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
 

@@ -1,5 +1,6 @@
 #include "odometry/tracker.h"
 
+#include "filters/straight_runs.h"
 #include "motion/rest.h"
 #include "odometry/place_evidence.h"
 

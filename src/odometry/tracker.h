@@ -2,6 +2,7 @@
 /// One or more tracks, judged by one evidence.
 #pragma once
 
+#include "filters/spatial_sampling.h"
 #include "odometry/start.h"
 
 #include <cstddef>

@@ -1,6 +1,7 @@
 #include "registration/ceres_solver.h"
 
 #include "common/eigen_analysis.h"
+#include "common/perturbation.h"
 
 #include <ceres/ceres.h>
 

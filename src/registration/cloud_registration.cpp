@@ -1,6 +1,7 @@
 #include <pcl_floam/registration/core/cloud_registration.h>
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 #include "registration/cloud_alignment.h"
 #include "registration/locked_motions.h"
 #include "registration/start_search.h"
@@ -137,11 +138,6 @@ PreparedCloud& PreparedCloud::operator=(PreparedCloud&& other) noexcept = defaul
 bool PreparedCloud::empty() const
 {
   return pyramid_->empty();
-}
-
-double PreparedCloud::spacing() const
-{
-  return pyramid_->full().spacing;
 }
 
 RegistrationReport registerClouds(const PreparedCloud& source, const PreparedCloud& target,

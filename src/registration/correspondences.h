@@ -1,10 +1,11 @@
 /// \file correspondences.h
-/// Features of the scan linked to lines and planes of the map.
+/// Features of the scan linked to lines and planes of the map, and what each counts.
 #pragma once
 
 #include "common/sweep_trajectory.h"
 #include "registration/factors.h"
 
+#include <pcl_floam/filters/core/feature_kind.h>
 #include <pcl_floam/filters/core/features.h>
 #include <pcl_floam/registration/core/feature_registration.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
@@ -52,5 +53,26 @@ void findCorrespondences(const RegistrationProblem& problem, const FeatureSet& s
                          const std::vector<double>& edge_weights, const std::vector<double>& plane_weights,
                          const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
                          Correspondences& correspondences);
+
+/// What an edge counts beside a plane, where Eq. 10 is not taken as printed, with 1. Edges are centimetres off, by the
+/// noise and the spacing of the few points that they were seen by, where planes are good to millimetres; but along
+/// corridors and roads there is little else.
+inline constexpr double kEdgeWeight = 0.12;
+
+/// W(p) of every feature of one kind (Eq. 9). But as printed they sum up to the features' number, or to \ref
+/// kEdgeWeight times that of the edges: residuals keep their units, and each feature its say.
+[[nodiscard]] std::vector<double> smoothnessWeights(const std::vector<Feature>& features, FeatureKind kind,
+                                                    WeightScheme scheme);
+
+/// A plane counts half if its map points' standard deviation across it is so many times the median of the scan's
+/// planes.
+inline constexpr double kPlaneScatter = 2.0;
+
+/// Weighs each linked plane by W / (1 + v / (kPlaneScatter^2 m)), where v is its variance and m the median of all.
+///
+/// Five neighbours at the foot of a wall or a shelf are no plane, but tilt and lift the one that is fitted to them, and
+/// always to the same side: the floor has things standing on it, none hang below.
+/// \param weights W of Eq. 9, for each of the planes
+void weighByScatter(const std::vector<double>& weights, std::vector<Correspondence>& planes);
 
 }  // namespace pcl_floam

@@ -5,7 +5,6 @@
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
 #include "registration/pose_factors.h"
-#include "registration/weights.h"
 
 #include <algorithm>
 #include <cmath>

@@ -30,9 +30,11 @@ using PullsWhenMoved = std::function<Pulls(const TriedMotions& motions, const Ve
 
 /// A sensor's rings lie on the rings that it has drawn into the map, and hold the pose where it was, each with a small
 /// and definite error. So the pose is moved along the directions of which is known least, and its pulls along all of
-/// them are looked at (\ref shareOfGrowth): where two are known alike, neither need be the one that is not held.
-/// \param information of independent residuals; motions translate (m) before they turn (rad)
-/// \param way         m: by a part of what the scan's points lie apart
+/// them are looked at: how much of the growth that is promised is there, when the pose has gone some way to either
+/// side. What is drawn to the nearest part of a sampling pattern is drawn to the next part after half of the pattern's
+/// spacing: if the way is longer than that, its pull comes back nowhere, however many points have it. Where two
+/// directions are known alike, neither need be the one that is not held. \param information of independent residuals;
+/// motions translate (m) before they turn (rad) \param way         m: by a part of what the scan's points lie apart
 [[nodiscard]] HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
                                               const PullsWhenMoved& pulls);
 

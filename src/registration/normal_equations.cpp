@@ -22,7 +22,7 @@ constexpr int kNoiseStride = 4;
 constexpr double kFeatureDeviations = 3.0;
 
 /// The kernel's scale for residuals of one kind, m.
-double scaleOf(const std::vector<Correspondence>& correspondences, double smallest)
+double scaleOf(const std::vector<Correspondence>& correspondences)
 {
   std::vector<double> squares;
   squares.reserve(correspondences.size());
@@ -31,7 +31,7 @@ double scaleOf(const std::vector<Correspondence>& correspondences, double smalle
       squares.push_back(c.factor.residual(c.point).squaredNorm());
     }
   }
-  return kernelScale(squares, kFeatureDeviations, smallest);
+  return kernelScale(squares, kFeatureDeviations, kSmallestKernelScale);
 }
 
 /// The sums of one chunk.
@@ -81,9 +81,9 @@ private:
 
 }  // namespace
 
-KernelScales adaptKernelScales(const Correspondences& correspondences, double smallest)
+KernelScales adaptKernelScales(const Correspondences& correspondences)
 {
-  return {scaleOf(correspondences.edges, smallest), scaleOf(correspondences.planes, smallest)};
+  return {scaleOf(correspondences.edges), scaleOf(correspondences.planes)};
 }
 
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other)

@@ -22,8 +22,7 @@ struct KernelScales {
 inline constexpr double kSmallestKernelScale = 0.05;
 
 /// The kernel's scale follows the spread of the residuals, measured by their median.
-[[nodiscard]] KernelScales adaptKernelScales(const Correspondences& correspondences,
-                                             double smallest = kSmallestKernelScale);
+[[nodiscard]] KernelScales adaptKernelScales(const Correspondences& correspondences);
 
 /// Sums over all correspondences.
 ///

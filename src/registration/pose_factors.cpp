@@ -1,6 +1,7 @@
 #include "registration/pose_factors.h"
 
 #include "common/covariance.h"
+#include "common/perturbation.h"
 
 namespace pcl_floam {
 

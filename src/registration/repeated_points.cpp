@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
-#include <cstring>
 
 namespace pcl_floam {
 
@@ -18,13 +16,6 @@ Place placeOf(const CloudView& cloud, int number)
 {
   const auto n = static_cast<std::size_t>(number);
   return {cloud.x(n) + 0.0F, cloud.y(n) + 0.0F, cloud.z(n) + 0.0F};  // zero has one sign then
-}
-
-std::uint64_t keyOf(const Place& place)
-{
-  std::array<std::uint32_t, 3> bits;
-  std::memcpy(bits.data(), place.data(), sizeof(bits));
-  return (std::uint64_t{bits[0]} << 32U | bits[1]) ^ (std::uint64_t{bits[2]} << 16U);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "registration/sweep_prior.h"
 
 #include <pcl_floam/common/se3.h>
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/core/scan_point.h>
 #include <pcl_floam/map/core/surface.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
 #include <pcl_floam/registration/core/registration_report.h>

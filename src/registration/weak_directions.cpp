@@ -1,7 +1,5 @@
 #include "registration/weak_directions.h"
 
-#include "registration/pull_growth.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -74,14 +72,15 @@ std::vector<double> WeakDirections::shares()
   return shares;
 }
 
-/// 0 if it is not certain that anything holds the direction.
+/// Of the growth of the pull that is promised, how much is there when the cloud has gone some way to either side. With
+/// noise it may be below 0; 0 if it is not certain that anything holds the direction.
 double WeakDirections::share(const InformationAnalysis& analysis, int direction)
 {
   const Vector6 motion = analysis.motion(direction);
   const double way = level_.spacing();
   const double stiffness = analysis.stiffness(direction);
-  const double share =
-      std::min(1.0, shareOfGrowth({pull(motion, -way), stiffness}, {pull(motion, way), stiffness}, way));
+  const double behind = pull(motion, -way);
+  const double share = std::min(1.0, (pull(motion, way) - behind) / (2.0 * way * stiffness));
   const double deviation = std::sqrt(alignment_.sums().residualVariance() / stiffness);
   return share > 0.0 && kCertain * deviation < share * way ? share : 0.0;
 }

@@ -1,12 +1,12 @@
 #include "benchmark/stage_benchmarks.h"
 
 #include "common/sweep_trajectory.h"
-#include "filters/line_neighborhood.h"
 #include "filters/line_points.h"
 #include "filters/smoothness.h"
+#include "map/kdtree_search.h"
 #include "registration/correspondences.h"
+#include "registration/factors.h"
 #include "registration/information_analysis.h"
-#include "registration/line_plane_fit.h"
 #include "registration/normal_equations.h"
 
 #include <pcl_floam/filters/core/sweep_motion.h>
@@ -120,10 +120,10 @@ void registerMapStages(const std::string& name, const SharedInput& input)
   auto found = std::vector<Neighbors>(queries.size());
   add(name, "1000 searches, voxels",
       [input, queries, found]() mutable { search(input->map.search(FeatureKind::plane), queries, found); });
-  const std::shared_ptr<const NeighborSearch> tree = makeKdTreeSearch(input->map.points(FeatureKind::plane));
+  const auto tree = std::make_shared<const KdTreeSearch>(input->map.points(FeatureKind::plane));
   add(name, "1000 searches, KD-tree", [tree, queries, found]() mutable { search(*tree, queries, found); });
   add(name, "KD-tree over the map's planes",
-      [points = input->map.points(FeatureKind::plane)] { gb::DoNotOptimize(makeKdTreeSearch(points)); });
+      [points = input->map.points(FeatureKind::plane)] { gb::DoNotOptimize(KdTreeSearch(points)); });
   search(input->map.search(FeatureKind::plane), queries, found);
   add(name, "1000 plane fits", [input, found] {
     for (const Neighbors& neighbors : found) {

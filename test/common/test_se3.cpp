@@ -1,4 +1,5 @@
 // Laws of rigid motions.
+#include "common/perturbation.h"
 #include "support/constants.h"
 #include "support/random_motion.h"
 

@@ -1,6 +1,7 @@
 // The sensor's poses during a sweep, and how a perturbation moves its points.
 #include "common/sweep_trajectory.h"
 #include "support/random_motion.h"
+#include "support/seen_place.h"
 
 #include <pcl_floam/filters/core/sweep_motion.h>
 
@@ -19,7 +20,7 @@ TEST(SweepTrajectory, IsTheExponentialOfTheTwist)
     const SweepTrajectory trajectory(kPose, kTwist, reference);
     for (double time = 0.0; time <= 1.0; time += 0.0137) {
       const Eigen::Vector3d expected = kPose * exp((time - reference) * kTwist) * kPoint;
-      EXPECT_LT((trajectory.at(kPoint, time) - expected).norm(), 1e-5) << reference << ' ' << time;
+      EXPECT_LT((placeOf(trajectory, kPoint, time) - expected).norm(), 1e-5) << reference << ' ' << time;
     }
   }
 }
@@ -32,7 +33,7 @@ TEST(SweepTrajectory, IsAsExactOfAFastSensorThatHardlyTurnsAndOfOneThatSpins)
     for (const double reference : {0.5, 1.0}) {
       const SweepTrajectory trajectory(kPose, twist, reference);
       const Eigen::Vector3d expected = kPose * exp(-reference * twist) * near;
-      EXPECT_LT((trajectory.at(near, 0.0) - expected).norm(), 1e-6) << turn << ' ' << reference;
+      EXPECT_LT((placeOf(trajectory, near, 0.0) - expected).norm(), 1e-6) << turn << ' ' << reference;
     }
   }
 }
@@ -45,7 +46,7 @@ TEST(SweepTrajectory, AnAccelerationGrowsWithTheSquareOfTheTime)
     for (double time = 0.0; time <= 1.0; time += 0.0137) {
       const double since = time - reference;
       const SE3 moved = exp(0.2 * since * kTwist + 0.5 * since * since * acceleration);
-      EXPECT_LT((trajectory.at(kPoint, time) - kPose * moved * kPoint).norm(), 1e-5) << reference << ' ' << time;
+      EXPECT_LT((placeOf(trajectory, kPoint, time) - kPose * moved * kPoint).norm(), 1e-5) << reference << ' ' << time;
       EXPECT_LT((SweepMotion(0.2 * kTwist, reference, acceleration).at(time) * kPoint - moved * kPoint).norm(), 1e-9);
     }
   }
@@ -55,14 +56,14 @@ TEST(SweepTrajectory, FromRestAnAccelerationMoves)
 {
   const Vector6 acceleration = (Vector6() << 8.0, 0.0, 0.0, 0.0, 0.0, 0.0).finished();
   const SweepTrajectory trajectory(SE3(), Vector6::Zero(), 0.5, acceleration);
-  EXPECT_NEAR(trajectory.at(Eigen::Vector3d::Zero(), 1.0).x(), 1.0, 1e-9);
+  EXPECT_NEAR(placeOf(trajectory, Eigen::Vector3d::Zero(), 1.0).x(), 1.0, 1e-9);
   EXPECT_FALSE(SweepMotion(Vector6::Zero(), 0.5, acceleration).isStill());
 }
 
 TEST(SweepTrajectory, AtRestThePoseIsAllThereIs)
 {
   const SweepTrajectory trajectory(kPose, Vector6::Zero(), 0.3);
-  EXPECT_EQ(trajectory.at(kPoint, 0.9), kPose * kPoint);
+  EXPECT_EQ(placeOf(trajectory, kPoint, 0.9), kPose * kPoint);
 }
 
 TEST(SweepTrajectory, APerturbationMovesAllPointsAsARigidScan)
@@ -70,8 +71,8 @@ TEST(SweepTrajectory, APerturbationMovesAllPointsAsARigidScan)
   const SweepTrajectory trajectory(kPose, kTwist, 0.5);
   const Vector6 delta = (Vector6() << 1.0, 2.0, -1.0, 0.5, 0.3, -0.7).finished();
   for (const double time : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-    const Eigen::Vector3d expected = exp(delta) * trajectory.at(kPoint, time);
-    EXPECT_LT((trajectory.perturbed(delta).at(kPoint, time) - expected).norm(), 1e-9) << time;
+    const Eigen::Vector3d expected = exp(delta) * placeOf(trajectory, kPoint, time);
+    EXPECT_LT((placeOf(trajectory.perturbed(delta), kPoint, time) - expected).norm(), 1e-9) << time;
   }
 }
 

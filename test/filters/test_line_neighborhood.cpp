@@ -1,5 +1,5 @@
 // Which lines are sparse, and how many neighbours tell of the surface there.
-#include "filters/line_neighborhood.h"
+#include "filters/line_points.h"
 #include "support/constants.h"
 
 #include <gtest/gtest.h>

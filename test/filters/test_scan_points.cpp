@@ -1,5 +1,5 @@
 // A scan's returns as registration and map take them.
-#include <pcl_floam/filters/core/scan_points.h>
+#include "filters/spatial_sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // When within the sweep a point was measured.
-#include "filters/azimuth.h"
+#include "common/azimuth.h"
+#include "common/pi.h"
 #include "support/synthetic_cloud.h"
 
 #include <pcl_floam/filters/core/scan_timing.h>

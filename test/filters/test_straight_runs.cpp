@@ -1,8 +1,7 @@
 // How far a scan line goes on straight about a return.
+#include "filters/straight_runs.h"
 #include "support/constants.h"
 #include "support/synthetic_cloud.h"
-
-#include <pcl_floam/filters/core/scan_points.h>
 
 #include <gtest/gtest.h>
 

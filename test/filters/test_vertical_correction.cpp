@@ -100,5 +100,30 @@ TEST(VerticalCorrection, AsAFilterItKeepsOrderFieldsAndWhatIsNotFinite)
   EXPECT_THROW(correction.setAngle(std::nan("")), std::invalid_argument);
 }
 
+TEST(VerticalCorrection, ThreadsGiveTheSameBits)
+{
+  std::mt19937 random(4);
+  const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (int i = 0; i < 20001; ++i) {
+    pcl::PointXYZ point;
+    point.getVector3fMap() = randomVector(random, 50.0).cast<float>();
+    cloud->push_back(point);
+  }
+  VerticalCorrection<pcl::PointXYZ> correction;
+  correction.setInputCloud(cloud);
+  correction.setAngle(0.5);
+  EXPECT_EQ(correction.getNumberOfThreads(), 1);
+  pcl::PointCloud<pcl::PointXYZ> once;
+  correction.filter(once);
+  correction.setNumberOfThreads(3);
+  EXPECT_EQ(correction.getNumberOfThreads(), 3);
+  pcl::PointCloud<pcl::PointXYZ> shared;
+  correction.filter(shared);
+  ASSERT_EQ(shared.size(), once.size());
+  for (std::size_t i = 0; i < once.size(); ++i) {
+    EXPECT_EQ(shared[i].getVector3fMap(), once[i].getVector3fMap());
+  }
+}
+
 }  // namespace
 }  // namespace pcl_floam::test

@@ -1,7 +1,7 @@
 // Edges that are lost in the noise of a few neighbours, and found over many.
 #include "filters/wide_smoothness.h"
 
-#include "filters/line_neighborhood.h"
+#include "filters/line_points.h"
 #include "filters/smoothness.h"
 #include "support/constants.h"
 

@@ -67,9 +67,11 @@ TEST(MapSearch, AgreesWithTheMapsOwnSearch)
       const Point& found = search.getInputCloud()->at(static_cast<std::size_t>(indices[n]));
       EXPECT_NEAR((found.getVector3fMap() - query.getVector3fMap()).squaredNorm(), distances[n], 1e-4F);
     }
-    std::vector<Neighbor> within;
-    map.search(FeatureKind::plane).within(position, 1.0, within);
-    EXPECT_EQ(search.radiusSearch(query, 1.0, indices, distances), static_cast<int>(within.size()));
+    std::size_t within = 0;
+    for (const Eigen::Vector3d& point : map.points(FeatureKind::plane)) {
+      within += (point - position).norm() <= 1.0 ? 1 : 0;
+    }
+    EXPECT_EQ(search.radiusSearch(query, 1.0, indices, distances), static_cast<int>(within));
   }
 }
 
@@ -141,6 +143,17 @@ TEST(MapSearch, ClustersOfTheMap)
       EXPECT_EQ(search->getInputCloud()->at(static_cast<std::size_t>(index)).x < 0.0F, left);
     }
   }
+}
+
+TEST(MapSearch, KnowsWhatItTook)
+{
+  EXPECT_EQ(MapSearch<Point>().getMap(), nullptr);
+  const KeyframeVoxelMap map = furnishedMap();
+  MapSearch<Point> search(map, FeatureKind::edge);
+  const auto taken = search.getMap();
+  EXPECT_EQ(taken->size(), map.size(FeatureKind::edge));
+  search.setInputCloud(pcl::make_shared<Cloud>(1, 1));
+  EXPECT_EQ(search.getMap(), taken);
 }
 
 TEST(MapSearch, ClustersAmongIndices)

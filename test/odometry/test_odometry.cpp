@@ -2,6 +2,7 @@
 #include "support/moving_room.h"
 #include "support/random_motion.h"
 
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/odometry/odometry.h>
 
 #include <gtest/gtest.h>
@@ -216,12 +217,17 @@ TEST(Odometry, ASensorAtRestStaysAtRest)
   }
 }
 
-/// As of a lidar that has none: x, y, z alone, in any order and in a frame that is turned by any rotation. Each scan is
-/// of one instant.
-TEST(Odometry, SettingsOutOfRangeAreRefused)
+TEST(Odometry, NoThreadsAreAllProcessors)
 {
   OdometryParameters parameters = defaults();
   parameters.threads = 0;
+  EXPECT_EQ(OdometryPipeline(parameters).getParameters().threads, threadCount(0));
+}
+
+TEST(Odometry, SettingsOutOfRangeAreRefused)
+{
+  OdometryParameters parameters = defaults();
+  parameters.threads = -1;
   EXPECT_THROW(OdometryPipeline{parameters}, std::invalid_argument);
   parameters = defaults();
   parameters.map.horizon = -1.0;

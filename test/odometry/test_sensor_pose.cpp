@@ -1,4 +1,5 @@
 // A sensor that is not at the origin of the frame that its clouds are given in.
+#include "common/perturbation.h"
 #include "support/moving_room.h"
 
 #include <pcl_floam/common/core/moved_cloud.h>

@@ -1,4 +1,5 @@
 // Residuals and their derivatives (Eq. 5, 7, 11, 13, 14).
+#include "common/perturbation.h"
 #include "registration/factors.h"
 #include "registration/robust_kernel.h"
 #include "support/random_motion.h"

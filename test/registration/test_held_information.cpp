@@ -1,6 +1,5 @@
 // Registration with a sensor's own pattern: what holds a pose, and what only seems to.
 #include "registration/held_information.h"
-#include "registration/pull_growth.h"
 #include "registration/surface_registration.h"
 #include "support/corner.h"
 
@@ -188,15 +187,6 @@ TEST(HeldInformation, ChangesNothingElse)
     EXPECT_EQ(tried.point_evidence, plain.point_evidence);
     EXPECT_EQ(tried.posterior, plain.posterior);
   }
-}
-
-TEST(PullGrowth, IsAllOfWhatASpringPromises)
-{
-  constexpr double kStiffness = 7.0;
-  constexpr double kOff = 0.02;  // m: the pose need not be where the pull ends
-  const auto spring = [](double way) { return Pull{kStiffness * (way + kOff), kStiffness}; };
-  EXPECT_NEAR(shareOfGrowth(spring(-0.1), spring(0.1), 0.1), 1.0, 1e-12);
-  EXPECT_NEAR(shareOfGrowth(Pull{0.3, 2.0}, Pull{0.3, 5.0}, 0.1), 0.0, 1e-12);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Lines and planes fitted to neighbours.
-#include "registration/line_plane_fit.h"
+#include "registration/factors.h"
 #include "support/random_motion.h"
 
 #include <gtest/gtest.h>

@@ -3,6 +3,7 @@
 #include "registration/information_analysis.h"
 #include "registration/normal_equations.h"
 #include "support/random_motion.h"
+#include "support/seen_place.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +28,7 @@ struct Scan {
         const Eigen::Vector3f point = randomVector(random, 15.0).cast<float>();
         features.push_back({point.x(), point.y(), point.z(), static_cast<float>(0.5 + uniform(random, 0.5))});
         c.weight = 1.0 + uniform(random, 0.5);
-        c.factor = {kind, trajectory.at(point.cast<double>(), features.back().time) + randomVector(random, noise),
+        c.factor = {kind, placeOf(trajectory, point.cast<double>(), features.back().time) + randomVector(random, noise),
                     randomVector(random, 1.0).normalized()};
       }
     };
@@ -42,7 +43,7 @@ struct Scan {
     const auto move = [&](const std::vector<Feature>& features, auto& correspondences) {
       for (std::size_t i = 0; i < features.size(); ++i) {
         const Feature& f = features[i];
-        correspondences[i].point = trajectory.at(Eigen::Vector3d(f.x, f.y, f.z), f.time);
+        correspondences[i].point = placeOf(trajectory, Eigen::Vector3d(f.x, f.y, f.z), f.time);
         correspondences[i].since_reference = trajectory.sinceReference(f.time);
       }
     };
@@ -231,13 +232,11 @@ TEST_F(NormalEquationsTest, NewtonStepsAndCeresReachTheSameMotionDuringTheSweep)
 
 TEST_F(NormalEquationsTest, KernelScaleFollowsTheResiduals)
 {
-  const auto scalesAt = [&](double noise) {
-    return adaptKernelScales(Scan(trajectory_, noise).along(trajectory_), 0.01);
-  };
+  const auto scalesAt = [&](double noise) { return adaptKernelScales(Scan(trajectory_, noise).along(trajectory_)); };
   EXPECT_NEAR(scalesAt(1.0).edge / scalesAt(0.1).edge, 10.0, 1e-3);
   EXPECT_NEAR(scalesAt(1.0).plane / scalesAt(0.1).plane, 10.0, 1e-3);
-  EXPECT_DOUBLE_EQ(scalesAt(0.0).edge, 0.01);
-  EXPECT_DOUBLE_EQ(scalesAt(0.0).plane, 0.01);
+  EXPECT_DOUBLE_EQ(scalesAt(0.0).edge, kSmallestKernelScale);
+  EXPECT_DOUBLE_EQ(scalesAt(0.0).plane, kSmallestKernelScale);
 }
 
 TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
@@ -250,7 +249,7 @@ TEST_F(NormalEquationsTest, KernelScaleIsThreeStandardDeviationsByTheMedian)
     c.weight = 1.0;
     correspondences.planes.push_back(c);
   }
-  EXPECT_NEAR(adaptKernelScales(correspondences, 0.01).plane, 3.0 * 1.4826 * 0.1, 1e-9);
+  EXPECT_NEAR(adaptKernelScales(correspondences).plane, 3.0 * 1.4826 * 0.1, 1e-9);
 }
 
 TEST_F(NormalEquationsTest, CovarianceIsTheInverseInformationTimesTheVariance)

@@ -69,7 +69,7 @@ std::vector<Eigen::Vector3d> edgesOfPosts(double lowest, const Eigen::Vector3d& 
 EdgeLines linesOf(const std::vector<Eigen::Vector3d>& edges)
 {
   EdgeLines lines;
-  lines.insert(edges.data(), std::vector<std::uint32_t>(edges.size(), 0).data(), edges.size());
+  lines.insert(edges.data(), edges.size());
   return lines;
 }
 
@@ -270,7 +270,9 @@ TEST(SurfaceRegistration, ThreadsGiveTheSameBits)
   const std::vector<ScanPoint> points = sweepOf(SweepTrajectory(exp(Vector6::Constant(0.05))), 3000);
   VoxelPyramid map(0.3);
   for (const ScanPoint& point : points) {
-    map.insert({point.x, point.y, point.z}, static_cast<std::uint32_t>(point.time * 16.0F));
+    const Eigen::Vector3d place(point.x, point.y, point.z);
+    const auto laser = static_cast<std::uint32_t>(point.time * 16.0F);
+    map.insert(&place, &laser, 1);
   }
   SurfaceProblem problem = problemOf(points, map);
   problem.prior.pose.translation.x() = 0.1;

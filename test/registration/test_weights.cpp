@@ -1,5 +1,5 @@
 // Smoothness weights (Eq. 9).
-#include "registration/weights.h"
+#include "registration/correspondences.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,7 @@
 // Whether the errors of single registrations are what their covariance says: normalised estimation error squared.
 
+#include "filters/spatial_sampling.h"
+#include "filters/straight_runs.h"
 #include "odometry/scan_preparation.h"
 #include "odometry/track.h"
 #include "simulator/test_world.h"

@@ -5,6 +5,7 @@
 #include "common/sweep_trajectory.h"
 #include "registration/surface_registration.h"
 #include "support/random_motion.h"
+#include "support/seen_place.h"
 
 #include <gtest/gtest.h>
 
@@ -55,7 +56,7 @@ inline std::vector<ScanPoint> sweepOf(const SweepTrajectory& sensor, std::size_t
     // What the sensor measures is the place seen from its pose of that moment.
     Eigen::Vector3d seen = sensor.pose().inverse() * place;
     for (int iteration = 0; iteration < 20; ++iteration) {
-      const Eigen::Vector3d off = place - sensor.at(seen, static_cast<double>(points[i].time));
+      const Eigen::Vector3d off = place - placeOf(sensor, seen, static_cast<double>(points[i].time));
       seen += sensor.pose().rotation.transpose() * off;
     }
     points[i].x = static_cast<float>(seen.x());

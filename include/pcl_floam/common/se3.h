@@ -19,10 +19,20 @@ using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::DontAlign>;
 /// Two plain members (96 bytes, no alignment), so that it can cross the boundary between code compiled
 /// with and without `-march` flags. Metres and a proper rotation matrix.
 struct SE3 {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d rotation;
+  Eigen::Vector3d translation;
 
-  SE3() = default;
+  /// The identity. Here and below number by number where it can be: an expression of Eigen's is longer for each
+  /// compiler that reads this.
+  SE3()
+  {
+    for (int i = 0; i < 9; ++i) {
+      rotation.data()[i] = i % 4 == 0 ? 1.0 : 0.0;
+    }
+    for (int i = 0; i < 3; ++i) {
+      translation.data()[i] = 0.0;
+    }
+  }
   SE3(const Eigen::Matrix3d& r, const Eigen::Vector3d& t) : rotation(r), translation(t) {}
 
   template <typename Scalar, int Mode>
@@ -52,7 +62,11 @@ struct SE3 {
     return m;
   }
 
-  [[nodiscard]] Eigen::Isometry3d isometry() const { return Eigen::Isometry3d(matrix()); }
+  template <typename Scalar = double>
+  [[nodiscard]] Eigen::Transform<Scalar, 3, Eigen::Isometry> isometry() const
+  {
+    return Eigen::Transform<Scalar, 3, Eigen::Isometry>(matrix<Scalar>());
+  }
 
   /// True when every number of it is finite.
   [[nodiscard]] bool isFinite() const;
@@ -60,7 +74,6 @@ struct SE3 {
 
 [[nodiscard]] SE3 operator*(const SE3& a, const SE3& b);
 
-/// Number by number: an expression of Eigen's is longer for each compiler that reads this.
 [[nodiscard]] inline Eigen::Vector3d operator*(const SE3& a, const Eigen::Vector3d& p)
 {
   const auto coordinate = [&](int i) {
@@ -68,9 +81,6 @@ struct SE3 {
   };
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
-
-/// The cross-product matrix: `skew(a) * b == a.cross(b)`.
-[[nodiscard]] Eigen::Matrix3d skew(const Eigen::Vector3d& v);
 
 /// The rotation of angle |\p phi| rad about \p phi (Rodrigues).
 [[nodiscard]] Eigen::Matrix3d expSO3(const Eigen::Vector3d& phi);
@@ -83,12 +93,6 @@ struct SE3 {
 
 /// Inverse of \ref exp, as used in Eq. 2 and Eq. 12a; rotation part in [0, pi].
 [[nodiscard]] Vector6 log(const SE3& target_T_source);
-
-/// How a perturbation in the source's axes looks in the target's: t exp(xi) = exp(adjoint(t) xi) t.
-[[nodiscard]] Matrix6 adjoint(const SE3& t);
-
-/// A perturbation (t, w) about a point is (t + arm x w, w) about one that lies \p arm nearer.
-[[nodiscard]] Matrix6 leverOf(const Eigen::Vector3d& arm);
 
 /// The nearest proper rotation (in the Frobenius norm) to a matrix that rounding has bent.
 [[nodiscard]] Eigen::Matrix3d nearestRotation(const Eigen::Matrix3d& m);

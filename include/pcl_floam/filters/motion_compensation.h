@@ -4,7 +4,7 @@
 
 #include <pcl_floam/common/core/moved_cloud.h>
 #include <pcl_floam/common/core/thread_count.h>
-#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/pose_instant.h>
 #include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/filters/core/sweep_motion.h>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_floam/common/core/moved_cloud.h>
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/vertical_angle.h>
 
 #include <pcl/filters/filter.h>
@@ -43,12 +44,17 @@ public:
   void setSensorPose(const SE3& frame_T_sensor) { sensor_pose_.set(frame_T_sensor); }
   [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
 
+  /// 1 or more; the result does not depend on it. 0 uses all processors. Default: 1.
+  void setNumberOfThreads(unsigned int threads = 0) { threads_ = threadCount(threads); }
+  [[nodiscard]] int getNumberOfThreads() const { return threads_; }
+
 protected:
   void applyFilter(PointCloud& output) override;
 
 private:
   double degrees_ = 0.0;
   SensorPose sensor_pose_;
+  int threads_ = 1;
 };
 
 }  // namespace pcl_floam

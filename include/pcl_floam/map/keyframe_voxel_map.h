@@ -110,7 +110,7 @@ public:
   template <typename PointT = pcl::PointXYZ>
   [[nodiscard]] typename pcl::PointCloud<PointT>::Ptr cloud(FeatureKind kind) const;
 
-  [[nodiscard]] const MapParameters& parameters() const;
+  [[nodiscard]] const MapParameters& getParameters() const;
 
 private:
   struct Impl;

@@ -38,6 +38,8 @@ public:
 
   /// Takes the present points of a layer as the input cloud. An empty layer has no neighbours.
   void setMap(const KeyframeVoxelMap& map, FeatureKind kind);
+  /// The points that it took, whatever has been set as input cloud since; null before.
+  [[nodiscard]] typename PointCloud::ConstPtr getMap() const { return map_; }
 
   using FiniteSearch<PointT>::nearestKSearch;
   using FiniteSearch<PointT>::radiusSearch;
@@ -48,6 +50,8 @@ public:
 
 private:
   [[nodiscard]] bool isEmpty() const { return !this->input_ || this->input_->empty(); }
+
+  typename PointCloud::ConstPtr map_;
 };
 
 }  // namespace pcl_floam

@@ -54,8 +54,8 @@ public:
   const OdometryReport& trackMissing(std::optional<double> stamp = std::nullopt);
 
   /// What wheels, an IMU or another estimator tell of the motion to the scan that comes next (or is missing next):
-  /// beside what the scans tell, and in place of it where these leave a direction open. For that scan only. Along
-  /// locked degrees of freedom it should say nothing: be of large variance.
+  /// beside what the scans tell, and in place of it where these leave a direction open. It lasts for that one scan:
+  /// give one before each. Along locked degrees of freedom it should say nothing: be of large variance.
   ///
   /// \throws std::invalid_argument as MotionHint::validate
   void setMotionHint(const MotionHint& hint);
@@ -93,7 +93,8 @@ public:
   /// Edge and plane layer around the sensor.
   [[nodiscard]] const KeyframeVoxelMap& map() const;
 
-  [[nodiscard]] const OdometryParameters& parameters() const;
+  /// As they were given, but `threads`, which is the number that works, where all processors were asked for.
+  [[nodiscard]] const OdometryParameters& getParameters() const;
 
   /// Forgets map and motion; the next scan starts at \p world_T_sensor.
   void reset(const SE3& world_T_sensor = {});

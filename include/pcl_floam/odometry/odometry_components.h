@@ -2,7 +2,7 @@
 /// Objects of one's own in place of the odometry's.
 #pragma once
 
-#include <pcl_floam/filters/core/scan_points.h>
+#include <pcl_floam/filters/core/scan_point.h>
 #include <pcl_floam/map/core/keyframe_policy.h>
 #include <pcl_floam/map/core/surface_map.h>
 #include <pcl_floam/registration/core/pose_factor.h>
@@ -26,7 +26,7 @@ struct OdometryComponents {
   KeyframeRule is_keyframe;
 
   /// Chooses the returns that are registered from those that may enter the map (engine `surfaces`). By default one of
-  /// each cell. What is chosen keeps its laser, place and index; its run (\ref findStraightRuns) is found afterwards.
+  /// each cell. What is chosen keeps its laser, place and index; its run is found afterwards.
   /// \param[out] registered empty
   std::function<void(const std::vector<ScanPoint>& points, std::vector<ScanPoint>& registered)> select_points;
 

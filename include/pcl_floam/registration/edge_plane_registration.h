@@ -22,6 +22,8 @@
 
 namespace pcl_floam {
 
+namespace detail {
+
 /// ICP's criteria, which know nothing of the registration before: PCL's compare with its mean squared error.
 template <typename Scalar>
 class FreshCriteria : public pcl::registration::DefaultConvergenceCriteria<Scalar> {
@@ -36,6 +38,8 @@ public:
     this->iterations_similar_transforms_ = 0;
   }
 };
+
+}  // namespace detail
 
 /// Registers a cloud with another cloud or with a map by point-to-line and point-to-plane distances (the paper's
 /// "Pose Estimation"), in place of `pcl::IterativeClosestPoint`.

@@ -12,6 +12,7 @@ namespace pcl_floam {
 void correctVerticalAngle(double degrees, FeatureSet& features);
 
 /// The same for \p count points side by side.
-void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y, float* z);
+/// \param threads >= 1; the result does not depend on it
+void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y, float* z, int threads = 1);
 
 }  // namespace pcl_floam

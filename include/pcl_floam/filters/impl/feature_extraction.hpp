@@ -17,7 +17,7 @@ void FeatureExtraction<PointT>::extractFromInput(FeatureSet& features)
 {
   const CloudView cloud = sensor_pose_.ofSensor(viewOf(*this->input_));
   findScanLines(cloud, sensor_, line_source_, lines_, threads_);
-  timing_ = findScanTiming(cloud, lines_, timing_source_);
+  timing_ = findScanTiming(cloud, lines_, timing_source_, threads_);
   std::vector<std::uint8_t> selectable;
   if (!this->fake_indices_ && this->indices_) {
     selectable = maskOf(*this->indices_, cloud.size);

@@ -9,7 +9,9 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -30,16 +32,26 @@ void VerticalCorrection<PointT>::applyFilter(PointCloud& output)
   const SE3& frame_T_sensor = sensor_pose_.get();
   const SE3 sensor_T_frame = frame_T_sensor.inverse();
   const Eigen::Quaternionf rotation(frame_T_sensor.rotation.template cast<float>());
-  for (PointT& point : output) {
-    if (!pcl::isXYZFinite(point) || sensor_pose_.isNoReturn(point.getVector3fMap())) {
-      continue;
+  std::vector<std::size_t> measured;
+  std::vector<float> x, y, z;
+  for (std::size_t i = 0; i < output.size(); ++i) {
+    const PointT& point = output[i];
+    if (pcl::isXYZFinite(point) && !sensor_pose_.isNoReturn(point.getVector3fMap())) {
+      const Eigen::Vector3d seen = sensor_T_frame * point.getVector3fMap().template cast<double>();
+      measured.push_back(i);
+      x.push_back(static_cast<float>(seen.x()));
+      y.push_back(static_cast<float>(seen.y()));
+      z.push_back(static_cast<float>(seen.z()));
     }
-    const Eigen::Vector3f before =
-        (sensor_T_frame * point.getVector3fMap().template cast<double>()).template cast<float>();
-    Eigen::Vector3f after = before;
-    correctVerticalAngle(degrees_, 1, &after.x(), &after.y(), &after.z());
+  }
+  const std::vector<float> from_x = x, from_y = y, from_z = z;
+  correctVerticalAngle(degrees_, measured.size(), x.data(), y.data(), z.data(), threads_);
+  for (std::size_t n = 0; n < measured.size(); ++n) {
+    PointT& point = output[measured[n]];
+    const Eigen::Vector3f after(x[n], y[n], z[n]);
     point.getVector3fMap() = (frame_T_sensor * after.cast<double>()).template cast<float>();
     if constexpr (pcl::traits::has_normal_v<PointT>) {
+      const Eigen::Vector3f before(from_x[n], from_y[n], from_z[n]);
       const Eigen::Quaternionf turn(rotation * Eigen::Quaternionf::FromTwoVectors(before, after) * rotation.inverse());
       point.getNormalVector3fMap() = turn * point.getNormalVector3fMap();
     }

@@ -6,8 +6,6 @@
 
 #include <array>
 #include <cstddef>
-#include <memory>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -53,12 +51,6 @@ public:
       nearest(queries[i], k, radius, neighbors[i]);
     }
   }
-
-  /// All points within \p radius of \p query, in no particular order. Replaces the contents of \p neighbors.
-  virtual void within(const Eigen::Vector3d& query, double radius, std::vector<Neighbor>& neighbors) const = 0;
 };
-
-/// FLANN's KD-tree over a fixed set of points (world frame, m; points that are not finite are left out).
-[[nodiscard]] std::unique_ptr<NeighborSearch> makeKdTreeSearch(const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace pcl_floam

@@ -29,14 +29,14 @@ struct Surface {
   double thickness = 0.0;   ///< m^2: variance of its points across it; for `point` the squared spacing of the points
   double extent = 0.0;      ///< m^2: variance of its points along it, in the shorter direction of a plane
   std::uint32_t count = 0;  ///< of the points it was found from
-  double size = 0.0;        ///< m: side of the neighbourhood it was found in
   /// Unit: the direction in which a plane's points are spread farthest; zero: not known, and it is as good as the
   /// other.
   Eigen::Vector3d wide = Eigen::Vector3d::Zero();
   double width = 0.0;  ///< m^2: variance of the points along \ref wide; 0: not known
 };
 
-/// Where a registration looks for surfaces. One's own can be handed in, in place of a \ref KeyframeVoxelMap.
+/// Where a registration looks for surfaces. One's own is handed to an odometry as a \ref SurfaceMap
+/// (OdometryComponents::map), which adds keyframes, too.
 class SurfaceSearch {
 public:
   virtual ~SurfaceSearch() = default;

@@ -6,11 +6,11 @@ namespace pcl_floam {
 template <typename PointT>
 void MapSearch<PointT>::setMap(const KeyframeVoxelMap& map, FeatureKind kind)
 {
-  const typename PointCloud::Ptr cloud = map.cloud<PointT>(kind);
-  if (cloud->empty()) {  // PCL's tree cannot be built of it, and says so on the terminal
-    pcl::search::Search<PointT>::setInputCloud(cloud);
+  map_ = map.cloud<PointT>(kind);
+  if (map_->empty()) {  // PCL's tree cannot be built of it, and says so on the terminal
+    pcl::search::Search<PointT>::setInputCloud(map_);
   } else {
-    this->setInputCloud(cloud);
+    this->setInputCloud(map_);
   }
 }
 

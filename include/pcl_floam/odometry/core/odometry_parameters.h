@@ -3,7 +3,7 @@
 #pragma once
 
 #include <pcl_floam/filters/core/feature_parameters.h>
-#include <pcl_floam/filters/core/motion_compensation_mode.h>
+#include <pcl_floam/filters/core/pose_instant.h>
 #include <pcl_floam/filters/core/scan_timing.h>
 #include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/filters/scan_lines.h>
@@ -12,7 +12,21 @@
 #include <pcl_floam/odometry/core/odometry_engine.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
 
+#include <cstdint>
+
 namespace pcl_floam {
+
+/// The ways to undo a sweep's distortion that the paper's ablation compares.
+enum class CompensationMode : std::uint8_t {
+  none,       ///< points are used as measured
+  two_stage,  ///< the paper's: predicted motion before, optimised motion after the pose estimation
+  iterative,  ///< LOAM's: compensated anew with every new estimate within the pose iterations
+  /// The motion during the sweep is estimated together with the pose, under a constant-velocity prior; by features,
+  /// which have no such prior, it is `iterative`.
+  continuous
+};
+
+[[nodiscard]] const char* toString(CompensationMode mode);
 
 /// Settings of \ref Odometry. The defaults are meant to fit every sensor and scene.
 struct OdometryParameters {
@@ -33,7 +47,7 @@ struct OdometryParameters {
   RegistrationParameters registration;
   KeyframePolicy keyframe;
   MapParameters map;
-  int threads = 1;  ///< 1 to 1024; the result does not depend on it
+  int threads = 1;  ///< 1 to 1024, or 0: all processors; the result does not depend on it
   /// Work of a start, by surfaces, that one scan bears beside its own, in registrations of a scan: other motions are
   /// followed, sought and tried, and the first scans are gone through once more from the last ones. What is more is
   /// left to the scans that follow, whose poses are provisional until then. 2 to 1000; counted, not timed, so that the

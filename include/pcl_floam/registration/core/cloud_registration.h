@@ -39,9 +39,6 @@ public:
 
   [[nodiscard]] bool empty() const;
 
-  /// Typical distance of neighbouring points, m; 0 if all points are equal.
-  [[nodiscard]] double spacing() const;
-
   [[nodiscard]] const CloudPyramid& pyramid() const { return *pyramid_; }
 
 private:

@@ -9,6 +9,8 @@
 
 namespace pcl_floam {
 
+namespace detail {
+
 /// What an affine map does before its rigid motion; the identity if that is all up to rounding.
 [[nodiscard]] inline Eigen::Matrix4d stretchOf(const Eigen::Matrix4d& map, const SE3& motion)
 {
@@ -17,6 +19,8 @@ namespace pcl_floam {
   return (stretch - Eigen::Matrix4d::Identity()).norm() < kRounding ? Eigen::Matrix4d(Eigen::Matrix4d::Identity())
                                                                     : stretch;
 }
+
+}  // namespace detail
 
 template <typename PointSource, typename PointTarget, typename Scalar>
 std::vector<std::uint8_t> EdgePlaneRegistration<PointSource, PointTarget, Scalar>::selectableSource() const
@@ -243,7 +247,7 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::computeTransformat
   Matrix4 stretch = Matrix4::Identity();
   if (start.isFinite()) {
     start.rotation = nearestRotation(start.rotation);
-    stretch = stretchOf(guess.template cast<double>(), start).template cast<Scalar>();
+    stretch = detail::stretchOf(guess.template cast<double>(), start).template cast<Scalar>();
   }
   takeSource(stretch);
   report_ = registerSource(start);

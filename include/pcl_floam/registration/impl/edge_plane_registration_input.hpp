@@ -16,8 +16,8 @@ EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
   this->reg_name_ = "EdgePlaneRegistration";
   this->max_iterations_ = RegistrationRun().max_iterations;
   this->setSearchMethodTarget(pcl::make_shared<FiniteSearch<PointTarget>>());
-  this->convergence_criteria_ =
-      pcl::make_shared<FreshCriteria<Scalar>>(this->nr_iterations_, this->transformation_, *this->correspondences_);
+  this->convergence_criteria_ = pcl::make_shared<detail::FreshCriteria<Scalar>>(
+      this->nr_iterations_, this->transformation_, *this->correspondences_);
   own_estimation_ = this->transformation_estimation_;
   own_correspondences_ = this->correspondence_estimation_;
 }

@@ -55,7 +55,7 @@ template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setUpCriteria()
 {
   auto& criteria = *this->convergence_criteria_;
-  if (auto* fresh = dynamic_cast<FreshCriteria<Scalar>*>(&criteria)) {  // else the user's
+  if (auto* fresh = dynamic_cast<detail::FreshCriteria<Scalar>*>(&criteria)) {  // else the user's
     fresh->start();
   }
   criteria.setMaximumIterations(std::numeric_limits<int>::max());  // counted elsewhere

@@ -7,8 +7,6 @@
 
 namespace pcl_floam {
 
-constexpr double kTwoPi = 6.283185307179586;
-
 /// A monotonic stand-in for atan2(y, x) in [0, 4): one division instead of a transcendental function.
 /// 0 at the front (+x), 1 at the left (+y), 2 at the rear, 3 at the right.
 inline float pseudoAzimuth(float x, float y)

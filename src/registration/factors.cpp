@@ -1,4 +1,4 @@
-#include "registration/line_plane_fit.h"
+#include "registration/factors.h"
 
 #include "map/neighbor_moments.h"
 

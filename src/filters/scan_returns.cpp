@@ -1,8 +1,7 @@
-#include <pcl_floam/filters/core/scan_points.h>
+#include "filters/scan_returns.h"
 
 #include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
-#include "filters/scan_returns.h"
 
 #include <pcl_floam/filters/core/vertical_angle.h>
 
