@@ -2,59 +2,32 @@
 //
 //   ./07_own_map SCANS
 // prints
-//   000019.pcd: tracked, at 1.31 0.00 0.01 m
-#include <bitset>
-#include <Eigen/Eigenvalues>
-#include "each_scan.h"
+//   000019.pcd: tracked, at 1.31 0.00 0.00 m
+#include "ndt_map.h"
 
-struct NdtMap : pcl_floam::SurfaceMap {
-  struct Cell {
-    Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();  // sum of x x^T with x = (x, y, z, 1)
-    std::bitset<128> lasers;  // that have seen it: what one draws by itself, on whatever it hits, is no plane
-  };
-  static constexpr double kSide = 2.5;  // m
-  std::map<std::array<double, 3>, Cell> cells;
+#include <pcl_floam/io/scan_source.h>
 
-  static auto keyOf(const Eigen::Vector3d& p) { return std::array{floor(p.x()), floor(p.y()), floor(p.z())}; }
-  static pcl_floam::Surface planeOf(const Cell& cell)
-  {
-    pcl_floam::Surface plane;
-    plane.count = static_cast<std::uint32_t>(cell.moments(3, 3));
-    plane.center = cell.moments.topRightCorner<3, 1>() / plane.count;
-    const Eigen::Matrix3d squares = cell.moments.topLeftCorner<3, 3>() / plane.count;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares - plane.center * plane.center.transpose());
-    plane.direction = eigen.eigenvectors().col(0);
-    plane.thickness = eigen.eigenvalues()[0];  // of the variances, which rise
-    plane.extent = eigen.eigenvalues()[1];
-    const bool is_plane = plane.count > 5 && cell.lasers.count() > 2 && plane.thickness < 0.5 * plane.extent;
-    plane.kind = is_plane ? pcl_floam::SurfaceKind::plane : pcl_floam::SurfaceKind::unknown;
-    return plane;
-  }
-  std::unique_ptr<SurfaceMap> makeEmpty(double /*side*/) const override { return std::make_unique<NdtMap>(); }
-  std::unique_ptr<SurfaceMap> copy() const override { return std::make_unique<NdtMap>(*this); }
-  bool empty() const override { return cells.empty(); }
-  void clear() override { cells.clear(); }
-  void insert(const Eigen::Vector3d* places, const std::uint32_t* lasers, std::size_t count) override
-  {
-    for (std::size_t i = 0; i < count; ++i) {
-      Cell& cell = cells[keyOf(places[i] / kSide)];
-      const Eigen::Vector4d x = places[i].homogeneous();
-      cell.moments += x * x.transpose();
-      cell.lasers.set(lasers[i] % 128);
-    }
-  }
-  void find(const Eigen::Vector3d* p, std::size_t n, pcl_floam::Surface* surfaces) const override
-  {
-    for (std::size_t i = 0; i < n; ++i) {
-      const auto cell = p[i].allFinite() ? cells.find(keyOf(p[i] / kSide)) : cells.end();
-      surfaces[i] = cell == cells.end() ? pcl_floam::Surface() : planeOf(cell->second);
-    }
-  }
-};
+#include <iomanip>
+#include <iostream>
+#include <memory>
 
 int main(int argc, char** argv)
-{
+try {
+  const pcl_floam::ScanSource scans(argc > 1 ? argv[1] : ".");
   pcl_floam::OdometryComponents components;
   components.map = std::make_shared<NdtMap>();
-  return trackEachScan(argc, argv, components);
+  pcl_floam::OdometryPipeline odometry;
+  odometry.setComponents(components);
+
+  pcl::PCLPointCloud2 scan;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    scans.read(i, scan);
+    const pcl_floam::OdometryReport& report = odometry.track(pcl_floam::viewOf(scan), scans.stamp(i));
+    std::cout << std::fixed << std::setprecision(2) << scans.name(i) << ": " << toString(report.state) << ", at "
+              << report.world_T_sensor.translation.transpose() << " m\n";
+  }
+  return 0;
+} catch (const pcl_floam::FileError& error) {
+  std::cerr << error.what() << '\n';
+  return 2;
 }

@@ -22,19 +22,20 @@ bool GroundArea::contains(const Eigen::Vector3d& point) const
 PlotLayout layoutFor(const GroundArea& path, bool with_error)
 {
   constexpr double kWide = 1.5;
+  constexpr double kTop = 0.89;  // above it two rows of a key, and the title
   const Eigen::Vector2d extent = path.highest - path.lowest;
   PlotLayout layout;
   if (extent.x() > kWide * extent.y()) {
     layout.width = 1100;
     layout.height = 800;
-    layout.top_view = {0.07, 0.97, 0.44, 0.92};
+    layout.top_view = {0.07, 0.97, 0.44, kTop};
     layout.height_plot = {0.07, with_error ? 0.48 : 0.97, 0.075, 0.325};
     layout.error_plot = {0.56, 0.97, 0.075, 0.325};
   } else {
     layout.width = 1300;
     layout.height = 760;
-    layout.top_view = {0.055, 0.565, 0.08, 0.92};
-    layout.height_plot = {0.64, 0.98, with_error ? 0.575 : 0.08, 0.92};
+    layout.top_view = {0.055, 0.565, 0.08, kTop};
+    layout.height_plot = {0.64, 0.98, with_error ? 0.575 : 0.08, kTop};
     layout.error_plot = {0.64, 0.98, 0.08, 0.42};
   }
   return layout;

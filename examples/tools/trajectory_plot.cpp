@@ -100,7 +100,7 @@ std::string preamble(const PlotLayout& layout, const std::string& title, const s
                 layout.width, layout.height);
   script += "set output " + inQuotes(image.string()) + "\nset encoding utf8\n";
   script +=
-      "set multiplot\nset label 1 " + inQuotes(title) + formatted(" at screen %.4f,0.965\n", layout.top_view.left);
+      "set multiplot\nset label 1 " + inQuotes(title) + formatted(" at screen %.4f,0.975\n", layout.top_view.left);
   script += "set border 3 lc rgb '#606060'\nset tics nomirror out scale 0.5\nset grid lc rgb '#e4e4e4' lw 1 lt 1\n";
   return script;
 }

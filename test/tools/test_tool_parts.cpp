@@ -7,12 +7,15 @@
 #include "result_writer.h"
 #include "run_summary.h"
 #include "stage_times.h"
+#include "trajectory_plot.h"
 
 #include <pcl_floam/io/scan_source.h>
 
 #include <gtest/gtest.h>
 
 #include <iomanip>
+#include <map>
+#include <regex>
 #include <sstream>
 
 namespace pcl_floam::tools {
@@ -192,6 +195,39 @@ TEST(PlotFrame, BothAxesOfTheTopViewHaveOneScale)
                 extent.y() / ((panel.top - panel.bottom) * layout.height), 1e-9);
     EXPECT_TRUE(area.contains(Eigen::Vector3d::Zero()));
     EXPECT_TRUE(area.contains(end));
+  }
+}
+
+/// Where the words of an SVG picture stand, in pixels from its top.
+std::map<std::string, double> heightsOfWords(const std::string& svg)
+{
+  const std::regex text(R"(<g transform="translate\([0-9.]+,([0-9.]+)\)[^>]*>\s*<text>(?:<tspan[^>]*>)?\s*([^<]*))");
+  std::map<std::string, double> heights;
+  for (std::sregex_iterator word(svg.begin(), svg.end(), text), end; word != end; ++word) {
+    heights[(*word)[2]] = std::stod((*word)[1]);
+  }
+  return heights;
+}
+
+TEST(TrajectoryPlot, TheTitleStandsAboveEveryKeyHoweverLongItIs)
+{
+  constexpr double kLine = 18.0;  // pixels
+  for (const Eigen::Vector3d& end : {Eigen::Vector3d(200.0, 3.0, 0.0), Eigen::Vector3d(30.0, 40.0, 0.0)}) {
+    TrajectoryPlot plot;
+    plot.title = std::string(120, 'w');
+    plot.estimate = {SE3(), SE3(Eigen::Matrix3d::Identity(), end)};
+    plot.pairs = {plot.estimate, plot.estimate};
+    for (double z = 0.0; z < 3.0; z += 0.1) {
+      plot.map_points.emplace_back(1.0, 1.0, z);  // a post
+    }
+    const TemporaryFolder folder;
+    ASSERT_EQ(drawTrajectory(plot, folder.path() / "path.svg"), "");
+    const auto heights = heightsOfWords(test::contentOf(folder.path() / "path.svg"));
+    ASSERT_EQ(heights.count(plot.title), 1U);
+    for (const char* entry : {"map", "ground truth", "estimate", "start", "end", "in all", "horizontal"}) {
+      ASSERT_EQ(heights.count(entry), 1U) << entry;
+      EXPECT_LT(heights.at(plot.title) + kLine, heights.at(entry)) << entry;
+    }
   }
 }
 
