@@ -239,7 +239,7 @@ TEST_F(OdometryTool, EveryBadOptionOrPathGetsOneLineAndStatus2)
       {"scans -o truth.txt", "truth.txt"},
       {"scans -o result --speed 9", "--speed"},
       {"scans -o result --threads many", "--threads"},
-      {"scans -o result --threads 0", "threads is 0"},
+      {"scans -o result --threads 2000", "threads is 2000"},
       {"scans -o result --max-scans -1", "--max-scans"},
       {"scans -o result --from 8", "--from 8"},
       {"scans -o result --scan-period -1", "scan_period is -1"},
