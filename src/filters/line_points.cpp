@@ -92,8 +92,7 @@ LineNeighborhood neighborhoodIn(const LinePoints& line, int wanted, std::vector<
   LineNeighborhood neighborhood;
   neighborhood.each_side = wanted;
   neighborhood.spacing = medianSpacing(line, scratch);
-  const auto full_circle = static_cast<float>(2.0 * kPi);
-  if (static_cast<float>(line.size()) * kSparse <= full_circle && neighborhood.spacing > kSparse) {
+  if (static_cast<float>(line.size()) * kSparse <= static_cast<float>(kTwoPi) && neighborhood.spacing > kSparse) {
     neighborhood.is_sparse = true;
     neighborhood.each_side =
         std::clamp(static_cast<int>(kReach / neighborhood.spacing), std::min(kFewestNeighbors, wanted), wanted);
