@@ -22,6 +22,11 @@ void MotionHint::validate() const
   }
 }
 
+MotionHint MotionHint::inverse() const
+{
+  return {last_T_now.inverse(), propagated(adjoint(last_T_now), covariance)};
+}
+
 MotionHint operator*(const MotionHint& first, const MotionHint& second)
 {
   const Matrix6 back = adjoint(second.last_T_now.inverse());

@@ -15,6 +15,9 @@ Sweep backwards(const std::vector<Sweep>& kept, std::size_t k, std::size_t count
   sweep.periods = k + 1 < count ? kept[k + 1].periods : 1.0;
   sweep.fraction = -sweep.fraction;
   sweep.hint.reset();
+  if (k + 1 < count && kept[k + 1].hint) {
+    sweep.hint = kept[k + 1].hint->inverse();
+  }
   sweep.factors = {};
   return sweep;
 }

@@ -27,6 +27,7 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   problem.guess_covariance = guessCovarianceOf(doubt);
   problem.evidence = evidence;
   problem.is_rival = true;
+  problem.looks_for_patterns = false;
   return registerSurfaces(problem);
 }
 
@@ -88,11 +89,11 @@ SurfaceRegistration registerAround(SurfaceProblem expected, double side)
   for (const double sign : {1.0, -1.0}) {
     SurfaceProblem aside = expected;
     aside.begins_off = sign * doubt.perturbation;
-    aside.spacing = 0.0;
+    aside.looks_for_patterns = false;
     SurfaceRegistration found = registerSurfaces(aside);
     if (likelihood(found) > likelihood(best) + kOfOneMotion) {
-      aside.spacing = expected.spacing;  // it is asked what holds the pose where that is taken
-      best = aside.spacing > 0.0 ? registerSurfaces(aside) : std::move(found);
+      aside.looks_for_patterns = expected.looks_for_patterns;  // where the pose is taken
+      best = aside.looks_for_patterns ? registerSurfaces(aside) : std::move(found);
     }
   }
   return best;
@@ -125,7 +126,7 @@ std::optional<SE3> betterPlace(const SurfaceProblem& expected, double side, cons
 {
   SurfaceProblem weighed = expected;
   weighed.evidence = Evidence::total;
-  weighed.spacing = 0.0;
+  weighed.looks_for_patterns = false;
   SurfaceRegistration best = registerAround(weighed, side);
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {

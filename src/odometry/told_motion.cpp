@@ -25,12 +25,12 @@ constexpr double kOpen = 0.05;
 Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotation,
                              const std::optional<MotionHint>& hint)
 {
-  Matrix6 covariance = told;
-  if (hint) {
-    const Matrix6 both = told + propagated(turnOf(rotation), hint->covariance);
-    covariance -= propagated(told, inverseOf(both));
+  if (!hint) {
+    return told.topLeftCorner<3, 3>();
   }
-  return covariance.topLeftCorner<3, 3>();
+  const Matrix6 hinted = propagated(turnOf(rotation), hint->covariance);
+  const Matrix6 together = inverseOf(Matrix6(inverseOf(told) + inverseOf(hinted)));
+  return together.topLeftCorner<3, 3>();
 }
 
 void ToldMotion::take(const Eigen::Matrix3d& position, double periods)

@@ -95,6 +95,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   problem.evidence = rivals == Rivals::none ? Evidence::none : Evidence::total;
   if (rivals == Rivals::motions) {
     problem.is_rival = true;
+    problem.looks_for_patterns = false;
     problem.evidence = Evidence::of_points;
     problem.guess_covariance *= kLook * kLook;
   }
@@ -103,7 +104,7 @@ SurfaceRegistration Track::registerPredicted(const Sweep& sweep, Rivals rivals)
   if ((rivals != Rivals::motions || isLong(sweep)) && !explanation_.isMet(found.explained()) && seek(sweep, found)) {
     SurfaceProblem again = problemFor(sweep);
     again.evidence = problem.evidence;
-    again.spacing = rivals == Rivals::motions ? 0.0 : again.spacing;
+    again.looks_for_patterns = rivals != Rivals::motions;
     found = registerSurfaces(again);
   }
   return unlessByChance(std::move(found), explanation_);
@@ -175,12 +176,13 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.prior.velocity_before = velocity_before_;
   problem.prior.periods_between = periods_between_;
   problem.prior.covariance = motion_.covariance();
+  problem.prior.has_hint = sweep.hint.has_value();
   problem.prior.fraction = fractionOf(sweep);
   problem.guess_covariance = motion_.poseCovariance();
   problem.placement = placementOf(settings_.compensation);
   problem.locked = settings_.locked;
   problem.threads = settings_.threads;
-  problem.spacing = settings_.side;
+  problem.looks_for_patterns = true;
   problem.room = &room_;
   return problem;
 }

@@ -54,7 +54,7 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     problem.prior.covariance = oneMotion(second.periods);
     const bool is_last = round + 1 == look.rounds;
     problem.evidence = is_last ? Evidence::total : Evidence::none;
-    problem.spacing = 0.0;  // of many motions one is followed, and the next sweeps tell what holds that
+    problem.looks_for_patterns = false;  // of many motions one is followed, and the next sweeps tell what holds that
     problem.max_iterations = is_last ? problem.max_iterations : kOfARound;
     found = registerSurfaces(problem);
     if (!found.report.hasConverged()) {

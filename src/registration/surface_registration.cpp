@@ -1,8 +1,8 @@
 #include "registration/surface_registration.h"
 
-#include "registration/held_information.h"
 #include "registration/locked_motions.h"
 #include "registration/net_information.h"
+#include "registration/sampling_pattern.h"
 #include "registration/surface_evidence.h"
 #include "registration/surface_residuals.h"
 #include "registration/sweep_estimate.h"
@@ -57,7 +57,13 @@ public:
   SurfaceRegistration run()
   {
     SurfaceRegistration result;
-    const SurfaceSums sums = iterate(result.report);
+    SurfaceSums sums = iterate(result.report, 1.0);
+    if (problem_.looks_for_patterns && result.report.hasConverged()) {
+      findPatterns();
+      if (left_to_prior_.cols() > 0) {
+        sums = iterate(result.report, 0.0);
+      }
+    }
     if (problem_.evidence != Evidence::none && result.report.hasConverged()) {
       weighEvidence(result);
     }
@@ -66,6 +72,16 @@ public:
   }
 
 private:
+  /// What only they tell is left to a hint, if there is one. Otherwise the pose stays where it is, though nothing is
+  /// known of that: what is expected would be no more than what the pattern has told before.
+  void findPatterns()
+  {
+    by_pattern_ = motionsToldByPattern(
+        propagated(strong_.transpose(), net_) / kResidualsBesideMotion, problem_.locked,
+        [this](const TriedMotions& motions, const Vector6& moved) { return pullsWhenMoved(motions, moved); });
+    left_to_prior_ = problem_.prior.has_hint ? by_pattern_ : left_to_prior_;
+  }
+
   void weighEvidence(SurfaceRegistration& result)
   {
     const SurfaceEvidence evidence{placing_.trajectory(at_), problem_.threads};
@@ -74,16 +90,16 @@ private:
         evidence.of(problem_.scan, problem_.edges, room_.edges, is_of_points ? &result.point_evidence : nullptr);
   }
 
-  SurfaceSums iterate(RegistrationReport& report)
+  /// \param look of what the guess may be off, so far: halved with each
+  SurfaceSums iterate(RegistrationReport& report, double look)
   {
     report.termination = Termination::iteration_limit;
     SurfaceSums sums;
-    double look = 1.0;  // halved with each
     for (int i = 0; i < problem_.max_iterations && report.hasConverged(); ++i, look *= 0.5) {
       const bool narrow = look * look * doubt_ <= kLeastDoubt * kLeastDoubt;
       const bool all = first_stride_ == 1 || i >= kMostFirst || (narrow && i >= kLeastFirst);
       sums = told(sumsAt(look, all ? 1 : first_stride_));
-      report.iterations = i + 1;
+      ++report.iterations;
       const Vector12 step = sums.equations.count() < kFewest ? Vector12(Vector12::Zero()) : stepOf(sums);
       if (sums.equations.count() < kFewest) {
         report.termination = Termination::too_few_correspondences;
@@ -120,10 +136,10 @@ private:
     report.point_correspondences = sums.equations.points;
     report.plane_inliers = sums.equations.plane_inliers;
     report.information = propagated(strong_.transpose(), sums.equations.information);
-    const HeldInformation held = this->held(report.hasConverged());
     const Matrix6 besides = this->besides().information;
-    result.told = covarianceBy(held.information + besides);
-    nameWhatIsNotHeld(held, besides, commonUnits(sums.equations), report.weak_directions);
+    const Matrix6 told = propagated(apartFrom(by_pattern_, strong_, net_).transpose(), net_) / kResidualsBesideMotion;
+    result.told = covarianceBy(told + besides);
+    nameWeak(by_pattern_, besides, commonUnits(sums.equations), report.weak_directions);
     report.cost = sums.equations.cost;
     report.residual_rms =
         sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;
@@ -185,9 +201,10 @@ private:
       told.equations = net.steps;
       known_ = net.known;
     }
-    strong_ = Matrix6::Identity() - untold.onto;
+    strong_ = apartFrom(left_to_prior_, Matrix6::Identity() - untold.onto, net_);
     weak_ = untold.directions;
-    prior_ = untold.onto.isZero(0.0) ? of_prior_ : problem_.prior.apartFrom(untold.onto).information();
+    const Matrix6 others = Matrix6::Identity() - strong_;
+    prior_ = others.isZero(0.0) ? of_prior_ : problem_.prior.apartFrom(others).information();
     return told;
   }
 
@@ -207,19 +224,6 @@ private:
     const std::size_t edge_stride = problem_.is_rival ? 1 : stride;  // between motions, few edges tell
     return residualsAt(at_, look * look * problem_.guess_covariance)
         .sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
-  }
-
-  /// Of independent residuals, as far as they hold the pose.
-  [[nodiscard]] HeldInformation held(bool is_tried)
-  {
-    constexpr double kWay = 0.25;  // of the points' spacing: within a cell, and farther than rings near walls lie apart
-    const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
-    if (!is_tried || problem_.is_rival || !(problem_.spacing > 0.0)) {
-      return {information, {}};
-    }
-    return heldInformation(
-        information, problem_.locked, kWay * problem_.spacing,
-        [this](const TriedMotions& motions, const Vector6& moved) { return pullsWhenMoved(motions, moved); });
   }
 
   [[nodiscard]] Pulls pullsWhenMoved(const TriedMotions& motions, const Vector6& moved)
@@ -275,6 +279,8 @@ private:
   SurfaceRoom& room_;
   NormalEquations known_;  // of the last iteration
   Matrix6 net_ = Matrix6::Zero();
+  Motions by_pattern_ = Motions(6, 0);  // told by nothing else
+  Motions left_to_prior_ = Motions(6, 0);
   std::vector<WeakDirection> weak_;
   Matrix6 strong_ = Matrix6::Identity();  // projects on all other directions
 };

@@ -50,9 +50,8 @@ struct SurfaceProblem {
   /// Several motions are compared, by how each explains the scan: then residuals count as they are, noise and all, and
   /// only what they do not tell is left to the prior.
   bool is_rival = false;
-  /// m, as far as the scan's points lie apart: the pose is moved by a part of it to see what holds it. 0, and of
-  /// rivals: that is not asked.
-  double spacing = 0.0;
+  /// The pose is moved aside to see what holds it: structure or, as it seems, the sensor's own sampling pattern.
+  bool looks_for_patterns = false;
   int max_iterations = 12;
   int threads = 1;
   struct SurfaceRoom* room = nullptr;  ///< memory of the last one, of none that runs; nullptr: there is none

@@ -2,9 +2,9 @@
 /// How far a sweep's points are from the surfaces of a map, summed up.
 #pragma once
 
-#include "registration/held_information.h"
 #include "registration/normal_equations.h"
 #include "registration/placed_points.h"
+#include "registration/sampling_pattern.h"
 
 #include <array>
 #include <cstddef>

@@ -16,6 +16,7 @@ struct SweepPrior {
   /// target's axes.
   Matrix12 covariance = Matrix12::Identity();
   bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
+  bool has_hint = false;    ///< others than the scans have told of the motion
   double fraction = 0.0;    ///< duration of the sweep in periods
 
   /// H of pose and velocity: by how much the velocity follows the pose, and how well it is known then; and, if it

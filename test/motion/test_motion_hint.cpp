@@ -96,6 +96,25 @@ TEST(MotionHint, OneAfterTheOtherAddUp)
   EXPECT_LT((sampled - both.covariance).norm(), 0.05 * both.covariance.norm());
 }
 
+TEST(MotionHint, GoesBackAsItCame)
+{
+  std::mt19937 random(7);
+  constexpr double kSmall = 1e-6;  // m and rad
+  MotionHint hint = hintOf(exp(test::randomTwist(random, 5.0, 1.0)), 0.01);
+  hint.covariance(1, 1) *= 4.0;
+  const MotionHint back = hint.inverse();
+  EXPECT_LT(poseDistance(back.last_T_now * hint.last_T_now, SE3()), 1e-12);
+  EXPECT_LT((back.inverse().covariance - hint.covariance).norm(), 1e-12);
+  Matrix6 moved;  // the way back, by what moves the way there
+  for (int i = 0; i < 6; ++i) {
+    const Vector6 off = kSmall * Vector6::Unit(i);
+    const SE3 disturbed = hint.last_T_now * SE3(expSO3(off.tail<3>()), off.head<3>());
+    const SE3 error = back.last_T_now.inverse() * disturbed.inverse();
+    moved.col(i) << error.translation / kSmall, logSO3(error.rotation) / kSmall;
+  }
+  EXPECT_LT((moved * hint.covariance * moved.transpose() - back.covariance).norm(), 1e-4 * back.covariance.norm());
+}
+
 TEST(MotionHint, MustBeOne)
 {
   MotionHint hint = hintOf(SE3(), 0.1);

@@ -1,9 +1,14 @@
 // Whether scans tell how the sensor moves, whatever was expected.
 #include "odometry/told_motion.h"
 
+#include "common/covariance.h"
+#include "common/perturbation.h"
+#include "support/random_motion.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace pcl_floam {
 namespace {
@@ -127,6 +132,19 @@ TEST(ToldMotion, AHintTellsWhatTheScanLeavesOpen)
   ToldMotion motion;
   motion.take(both, 1.0);
   EXPECT_TRUE(motion.isTold());
+}
+
+/// Whichever way the two look: what the one does not tell at all makes no rounding of the other.
+TEST(ToldMotion, AHintIsAsGoodInEveryDirection)
+{
+  std::mt19937 random(3);
+  constexpr double kHint = 0.007;  // m
+  for (int i = 0; i < 100; ++i) {
+    const Matrix6 turn = turnOf(exp(test::randomTwist(random, 1.0, 3.0)).rotation);
+    const Eigen::Matrix3d rotation = exp(test::randomTwist(random, 1.0, 3.0)).rotation;
+    const Eigen::Matrix3d both = toldPosition(propagated(turn, told(kNothing)), rotation, hintOf(kHint));
+    EXPECT_LT(std::sqrt(both.trace()), 1.1 * std::sqrt(kHint * kHint + 2.0 * kWell * kWell)) << i;
+  }
 }
 
 TEST(ToldMotion, TwoThatTellAlikeTellTwiceAsMuch)

@@ -140,4 +140,36 @@ TEST(UnobservableDirection, IsLeftToAHint)
   EXPECT_LT(farthest, 4.0 * kWheels * std::sqrt(static_cast<double>(kTunnelScans)));
 }
 
+/// Whatever motion the first scans were found with.
+TEST(UnobservableDirection, IsLeftToAHintFromTheFirstScanOn)
+{
+  constexpr std::size_t kFirstScans = 20;
+  constexpr double kWheels = 0.005;                 // m
+  SimulationOptions options = testWorld("tunnel");  // from rest
+  options.seed = 27;
+  Simulation simulation(options);
+  OdometryParameters parameters;
+  parameters.pose_instant = PoseInstant::middle;
+  Odometry<PointXYZIRT> odometry(parameters);
+  std::vector<SE3> truth;
+  std::vector<SE3> found;
+  for (std::size_t scan = 0; scan < kFirstScans; ++scan) {
+    const Sweep sweep = simulation.sweep(scan);
+    if (scan > 0) {
+      odometry.setMotionHint(
+          {truth.back().inverse() * sweep.world_T_middle, kWheels * kWheels * Matrix6(Matrix6::Identity())});
+    }
+    truth.push_back(sweep.world_T_middle);
+    const OdometryReport& report = odometry.track(sweep.cloud, 0.1 * static_cast<double>(scan));
+    std::copy(report.corrected_poses.begin(), report.corrected_poses.end(),
+              found.end() - static_cast<std::ptrdiff_t>(report.corrected_poses.size()));
+    found.push_back(report.world_T_sensor);
+  }
+  for (std::size_t scan = 1; scan < kFirstScans; ++scan) {
+    const SE3 motion = found[scan - 1].inverse() * found[scan];
+    const SE3 error = (truth[scan - 1].inverse() * truth[scan]).inverse() * motion;
+    EXPECT_LT(error.translation.norm(), 4.0 * kWheels) << scan;
+  }
+}
+
 }  // namespace pcl_floam::simulator

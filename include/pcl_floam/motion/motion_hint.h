@@ -14,6 +14,9 @@ struct MotionHint {
   /// definite; large where nothing is told (wheels: height, roll and pitch; a gyroscope: all translation).
   Matrix6 covariance = Matrix6::Identity();
 
+  /// The motion back.
+  [[nodiscard]] MotionHint inverse() const;
+
   /// \throws std::invalid_argument if it is not finite or its covariance is not as above.
   void validate() const;
 };

@@ -1,6 +1,8 @@
-/// \file held_information.h
-/// What residuals tell of a pose, without what they only seem to tell.
+/// \file sampling_pattern.h
+/// Which motions only the sensor's own sampling pattern seems to tell.
 #pragma once
+
+#include "common/eigen_analysis.h"
 
 #include <pcl_floam/common/se3.h>
 #include <pcl_floam/registration/core/registration_parameters.h>
@@ -10,11 +12,6 @@
 #include <vector>
 
 namespace pcl_floam {
-
-struct HeldInformation {
-  Matrix6 information;
-  std::vector<Vector6> not_held;  ///< motions by a metre, of which it tells nothing any more
-};
 
 /// What residuals say along some motions, at most three.
 struct Pulls {
@@ -33,15 +30,20 @@ using PullsWhenMoved = std::function<Pulls(const TriedMotions& motions, const Ve
 /// them are looked at: how much of the growth that is promised is there, when the pose has gone some way to either
 /// side. What is drawn to the nearest part of a sampling pattern is drawn to the next part after half of the pattern's
 /// spacing: if the way is longer than that, its pull comes back nowhere, however many points have it. Where two
-/// directions are known alike, neither need be the one that is not held. \param information of independent residuals;
-/// motions translate (m) before they turn (rad) \param way         m: by a part of what the scan's points lie apart
-[[nodiscard]] HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
-                                              const PullsWhenMoved& pulls);
+/// directions are known alike, neither need be the one that only a pattern tells.
+/// \param information of independent residuals; motions translate (m) before they turn (rad)
+/// \return by a metre
+[[nodiscard]] Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom& locked,
+                                           const PullsWhenMoved& pulls);
 
-/// Adds what is not held to the weak directions, at right angles to those that are there, but for what else is known.
+/// Projects on what residuals tell of all other motions, whatever those have been.
+/// \param told projects on what they tell already
+[[nodiscard]] Matrix6 apartFrom(const Motions& motions, const Matrix6& told, const Matrix6& information);
+
+/// Adds motions to the weak directions, at right angles to those that are there, but for what else is known.
 /// \param besides information of the pose
 /// \param units   of displacement, per unit of each component
-void nameWhatIsNotHeld(const HeldInformation& held, const Matrix6& besides, const Vector6& units,
-                       std::vector<WeakDirection>& directions);
+void nameWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
+              std::vector<WeakDirection>& directions);
 
 }  // namespace pcl_floam

@@ -1,7 +1,7 @@
-#include "registration/held_information.h"
+#include "registration/sampling_pattern.h"
 
 #include "common/covariance.h"
-#include "common/eigen_analysis.h"
+#include "map/surface_fit.h"
 #include "registration/locked_motions.h"
 #include "registration/sweep_prior.h"
 
@@ -17,8 +17,11 @@ constexpr double kWellKnown = 0.004;
 constexpr double kUnknown = 1.0;
 /// rad/m: what turns the scan rather than move it is not found by small ways.
 constexpr double kTurns = 1.0;
-/// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns less than a fifth.
-constexpr double kHolds = 1.0 / 3.0;
+/// To either side, m: five standard deviations of a range. Farther than rings on near walls lie apart, and no farther
+/// than what a scene is made of is large.
+constexpr double kWay = 5.0 * kRangeNoise;
+/// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns less than a third.
+constexpr double kHolds = 0.4;
 
 /// Of all motions by a metre along an axis, that of which the residuals tell least; for each axis that is to be tried.
 Motions motionsToTry(const Matrix6& covariance)
@@ -37,7 +40,7 @@ Motions motionsToTry(const Matrix6& covariance)
 }
 
 /// Combinations of the motions and how much of the growth each has that is promised, rising.
-EigenAnalysis sharesOf(const Motions& tried, double way, const PullsWhenMoved& pulls)
+EigenAnalysis sharesOf(const Motions& tried, const PullsWhenMoved& pulls)
 {
   constexpr double kNothing = 1e-9;  // of the stiffness
   TriedMotions motions = TriedMotions::Zero();
@@ -45,9 +48,9 @@ EigenAnalysis sharesOf(const Motions& tried, double way, const PullsWhenMoved& p
   Eigen::Matrix3d growth = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d stiffness = Eigen::Matrix3d::Zero();
   for (Eigen::Index i = 0; i < tried.cols(); ++i) {
-    const Pulls behind = pulls(motions, -way * motions.col(i));
-    const Pulls ahead = pulls(motions, way * motions.col(i));
-    growth.col(i) = (ahead.against - behind.against) / (2.0 * way);
+    const Pulls behind = pulls(motions, -kWay * motions.col(i));
+    const Pulls ahead = pulls(motions, kWay * motions.col(i));
+    growth.col(i) = (ahead.against - behind.against) / (2.0 * kWay);
     stiffness += (behind.stiffness + ahead.stiffness) / static_cast<double>(2 * tried.cols());
   }
   if (!growth.allFinite() || !stiffness.allFinite()) {  // a map of the user's may give anything: that holds nothing
@@ -62,34 +65,42 @@ EigenAnalysis sharesOf(const Motions& tried, double way, const PullsWhenMoved& p
 
 }  // namespace
 
-HeldInformation heldInformation(const Matrix6& information, const DegreesOfFreedom& locked, double way,
-                                const PullsWhenMoved& pulls)
+Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom& locked, const PullsWhenMoved& pulls)
 {
   Matrix6 known = information;
   known.diagonal().array() += kNothingKnown;
   const Motions tried = motionsToTry(covarianceWithLocked(inverseOf(informationWithLocked(known, locked)), locked));
-  HeldInformation held = {information, {}};
   if (tried.cols() == 0) {
-    return held;
+    return tried;
   }
-  const EigenAnalysis shares = sharesOf(tried, way, pulls);
-  for (Eigen::Index i = 0; i < tried.cols() && shares.values[i] < kHolds; ++i) {
-    const Vector6 combined = tried * shares.vectors.col(i);
-    const Vector6 motion = combined / combined.head<3>().norm();
-    const Vector6 told = held.information * motion;
-    const double along = motion.dot(told);
-    if (along > 0.0) {
-      held.information -= told * told.transpose() / along;
-    }
-    held.not_held.push_back(motion);
+  const EigenAnalysis shares = sharesOf(tried, pulls);
+  const Eigen::Index count = (shares.values.array() < kHolds).count();  // they are rising
+  Motions motions = tried * shares.vectors.leftCols(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    motions.col(i) /= motions.col(i).head<3>().norm();
   }
-  return held;
+  return motions;
 }
 
-void nameWhatIsNotHeld(const HeldInformation& held, const Matrix6& besides, const Vector6& units,
-                       std::vector<WeakDirection>& directions)
+Matrix6 apartFrom(const Motions& motions, const Matrix6& told, const Matrix6& information)
 {
-  for (const Vector6& motion : held.not_held) {
+  Matrix6 apart = told;
+  for (Eigen::Index i = 0; i < motions.cols(); ++i) {
+    const Vector6 motion = motions.col(i);
+    const Vector6 along = propagated(apart.transpose(), information) * motion;
+    const double stiffness = motion.dot(along);
+    if (stiffness > 0.0) {
+      apart -= apart * motion * along.transpose() / stiffness;
+    }
+  }
+  return apart;
+}
+
+void nameWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
+              std::vector<WeakDirection>& directions)
+{
+  for (Eigen::Index k = 0; k < motions.cols(); ++k) {
+    const Vector6 motion = motions.col(k);
     if (motion.dot(besides * motion) * kUnknown * kUnknown < 1.0) {
       Motions named(6, static_cast<Eigen::Index>(directions.size()));
       for (Eigen::Index i = 0; i < named.cols(); ++i) {

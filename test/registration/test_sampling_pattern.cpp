@@ -1,5 +1,5 @@
 // Registration with a sensor's own pattern: what holds a pose, and what only seems to.
-#include "registration/held_information.h"
+#include "registration/sampling_pattern.h"
 #include "registration/surface_registration.h"
 #include "support/corner.h"
 
@@ -13,9 +13,9 @@
 namespace pcl_floam {
 namespace {
 
-constexpr double kAside = 2.0;         // m, from the way to wall and posts
-constexpr double kPointSpacing = 0.4;  // m, of the scan's points
-constexpr double kFarApart = 10.0;     // m, posts
+constexpr double kAside = 2.0;      // m, from the way to wall and posts
+constexpr double kFarApart = 10.0;  // m, posts
+constexpr double kNear = 0.05;      // m, posts that are as near to each other as a sensor's columns are
 
 /// A floor, a wall to the left, and posts to the right, so many metres apart.
 class Posts : public SurfaceSearch {
@@ -68,12 +68,12 @@ std::vector<ScanPoint> scanOf(double apart)
   return points;
 }
 
-SurfaceRegistration registered(double apart, double spacing, const PoseFactors* factors = nullptr)
+SurfaceRegistration registered(double apart, bool looks_for_patterns, const PoseFactors* factors = nullptr)
 {
   const Posts target(apart);
   const std::vector<ScanPoint> points = scanOf(apart);
   SurfaceProblem problem = test::problemOf(points, target);
-  problem.spacing = spacing;
+  problem.looks_for_patterns = looks_for_patterns;
   problem.factors = factors;
   return registerSurfaces(problem);
 }
@@ -83,21 +83,21 @@ double toldAlong(const SurfaceRegistration& registration)
   return std::sqrt(registration.told(0, 0));
 }
 
-TEST(HeldInformation, PostsHoldAPose)
+TEST(SamplingPattern, IsNotWhatPostsAre)
 {
-  const SurfaceRegistration found = registered(kFarApart, kPointSpacing);
+  const SurfaceRegistration found = registered(kFarApart, true);
   ASSERT_TRUE(found.report.hasConverged());
   EXPECT_TRUE(found.report.weak_directions.empty());
   EXPECT_LT(toldAlong(found), 0.05);
-  EXPECT_NEAR(toldAlong(found), toldAlong(registered(kFarApart, 0.0)), 1e-9);
+  EXPECT_NEAR(toldAlong(found), toldAlong(registered(kFarApart, false)), 1e-9);
 }
 
 /// As rings on a wall, or the columns of a sensor that lies on its side.
-TEST(HeldInformation, APatternThatIsTheSameAQuarterOfACellFartherDoesNot)
+TEST(SamplingPattern, HoldsNoPose)
 {
-  const SurfaceRegistration found = registered(0.05, kPointSpacing);
+  const SurfaceRegistration found = registered(kNear, true);
   ASSERT_TRUE(found.report.hasConverged());
-  EXPECT_LT(toldAlong(registered(0.05, 0.0)), 0.05) << "it does not seem to";
+  EXPECT_LT(toldAlong(registered(kNear, false)), 0.05) << "it does not seem to";
   EXPECT_GT(toldAlong(found), 10.0);
   EXPECT_LT(std::sqrt(found.told(1, 1)), 1e-3 * toldAlong(found)) << "across";
   ASSERT_EQ(found.report.weak_directions.size(), 1U);
@@ -115,10 +115,10 @@ public:
   }
 };
 
-TEST(HeldInformation, WhatIsKnownBesidesStays)
+TEST(SamplingPattern, WhatIsKnownBesidesStays)
 {
   const PoseFactors factors{{std::make_shared<Milestone>()}, SE3()};
-  const SurfaceRegistration found = registered(0.05, kPointSpacing, &factors);
+  const SurfaceRegistration found = registered(kNear, true, &factors);
   ASSERT_TRUE(found.report.hasConverged());
   EXPECT_TRUE(found.report.weak_directions.empty());
   EXPECT_NEAR(toldAlong(found), 0.01, 1e-3);
@@ -134,7 +134,7 @@ PullsWhenMoved heldAlong(const Vector6& held)
 }
 
 /// Whichever axes are tried.
-TEST(HeldInformation, IsTakenAwayWhereNothingPullsAndNowhereElse)
+TEST(SamplingPattern, IsWhereNothingPullsAndNowhereElse)
 {
   Matrix6 information = 1e6 * Matrix6(Matrix6::Identity());
   information.topLeftCorner<3, 3>() = Eigen::Vector3d(1e4, 1e4, 1e6).asDiagonal();
@@ -142,42 +142,65 @@ TEST(HeldInformation, IsTakenAwayWhereNothingPullsAndNowhereElse)
   for (const double turn : {0.0, 0.3, 0.8}) {
     Vector6 direction = Vector6::Zero();
     direction.head<2>() = Eigen::Vector2d(std::cos(turn), std::sin(turn));
-    const HeldInformation held = heldInformation(information, {}, 0.1, heldAlong(direction));
-    ASSERT_EQ(held.not_held.size(), 1U) << turn;
-    const Vector6& motion = held.not_held.front();
+    const Motions motions = motionsToldByPattern(information, {}, heldAlong(direction));
+    ASSERT_EQ(motions.cols(), 1) << turn;
+    const Vector6 motion = motions.col(0);
+    EXPECT_NEAR(motion.head<3>().norm(), 1.0, 1e-9);
     EXPECT_NEAR(motion.dot(direction), 0.0, 1e-6) << turn;
-    EXPECT_LT((held.information * motion).norm(), 1e-6) << turn;
-    EXPECT_NEAR(held.information(2, 2), information(2, 2), 1e-6);
-    EXPECT_GT(direction.dot(held.information * direction), 0.9e4);
+    const Matrix6 left = propagated(apartFrom(motions, Matrix6::Identity(), information).transpose(), information);
+    EXPECT_LT((left * motion).norm(), 1e-6) << turn;
+    EXPECT_NEAR(left(2, 2), information(2, 2), 1e-6);
+    EXPECT_GT(direction.dot(left * direction), 0.9e4);
   }
 }
 
-TEST(HeldInformation, IsNotAskedOfWhatIsLockedOrKnownWell)
+TEST(SamplingPattern, IsNotLookedForInWhatIsLockedOrKnownWell)
 {
   const PullsWhenMoved nothing = [](const TriedMotions& /*motions*/, const Vector6& /*moved*/) { return Pulls(); };
   Matrix6 information = 1e6 * Matrix6(Matrix6::Identity());
-  EXPECT_TRUE(heldInformation(information, {}, 0.1, nothing).not_held.empty());
+  EXPECT_EQ(motionsToldByPattern(information, {}, nothing).cols(), 0);
   information(0, 0) = 1e4;
-  EXPECT_EQ(heldInformation(information, {}, 0.1, nothing).not_held.size(), 1U);
+  EXPECT_EQ(motionsToldByPattern(information, {}, nothing).cols(), 1);
   const PullsWhenMoved not_a_number = [](const TriedMotions& /*motions*/, const Vector6& /*moved*/) {
     return Pulls{Eigen::Vector3d::Constant(std::nan("")), Eigen::Matrix3d::Constant(std::nan(""))};
   };
-  const HeldInformation held = heldInformation(information, {}, 0.1, not_a_number);
-  EXPECT_EQ(held.not_held.size(), 1U);
-  EXPECT_TRUE(held.information.allFinite());
-  EXPECT_TRUE(heldInformation(information, {true, false, false, false, false, false}, 0.1, nothing).not_held.empty());
+  const Motions motions = motionsToldByPattern(information, {}, not_a_number);
+  EXPECT_EQ(motions.cols(), 1);
+  EXPECT_TRUE(motions.allFinite());
+  EXPECT_EQ(motionsToldByPattern(information, {true, false, false, false, false, false}, nothing).cols(), 0);
+}
+
+/// Posts pull the pose to the nearest of them, whatever is expected; unless others than the scans have told of the
+/// motion, and it is only posts.
+TEST(SamplingPattern, YieldsToAHint)
+{
+  constexpr double kHinted = 0.015;  // m along the way, where no post is
+  const Posts target(kNear);
+  const std::vector<ScanPoint> points = scanOf(kNear);
+  for (const bool has_hint : {false, true}) {
+    SurfaceProblem problem = test::problemOf(points, target);
+    problem.looks_for_patterns = true;
+    problem.prior.pose.translation.x() = kHinted;
+    problem.prior.pose_counts = true;
+    problem.prior.has_hint = has_hint;
+    const SurfaceRegistration found = registerSurfaces(problem);
+    ASSERT_TRUE(found.report.hasConverged());
+    EXPECT_NEAR(found.report.target_T_source.translation.x(), has_hint ? kHinted : 0.0, 3e-3);
+    EXPECT_LT(found.report.target_T_source.translation.tail<2>().norm(), 1e-3);
+    EXPECT_NEAR(found.posterior(0, 0) / problem.prior.covariance(0, 0), has_hint ? 1.0 : 0.0, 0.1);
+  }
 }
 
 /// The trial leaves nothing behind.
-TEST(HeldInformation, ChangesNothingElse)
+TEST(SamplingPattern, ChangesNothingElse)
 {
-  const std::vector<ScanPoint> points = scanOf(0.05);
-  const Posts target(0.05);
+  const std::vector<ScanPoint> points = scanOf(kNear);
+  const Posts target(kNear);
   SurfaceProblem problem = test::problemOf(points, target);
   problem.edges = problem.scan;
   problem.evidence = Evidence::of_points;
   const SurfaceRegistration plain = registerSurfaces(problem);
-  problem.spacing = kPointSpacing;
+  problem.looks_for_patterns = true;
   for (const int threads : {1, 2, 3}) {
     problem.threads = threads;
     const SurfaceRegistration tried = registerSurfaces(problem);
