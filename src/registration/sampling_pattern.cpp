@@ -13,10 +13,6 @@ namespace {
 
 /// One standard deviation, m: what is known better is seldom held by a pattern alone, and need not be tried.
 constexpr double kWellKnown = 0.004;
-/// The same, m: where next to nothing is told there is nothing to try.
-constexpr double kUnknown = 1.0;
-/// rad/m: what turns the scan rather than move it is not found by small ways.
-constexpr double kTurns = 1.0;
 /// To either side, m: five standard deviations of a range. Farther than rings on near walls lie apart, and no farther
 /// than what a scene is made of is large.
 constexpr double kWay = 5.0 * kRangeNoise;
@@ -30,8 +26,8 @@ Motions motionsToTry(const Matrix6& covariance)
   Motions tried(6, 0);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double variance = axes.values[i];
-    const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
-    if (variance > kWellKnown * kWellKnown && variance < kUnknown * kUnknown && motion.tail<3>().norm() < kTurns) {
+    if (variance > kWellKnown * kWellKnown) {
+      const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
       tried.conservativeResize(6, tried.cols() + 1);
       tried.rightCols<1>() = motion;
     }
@@ -99,6 +95,7 @@ Matrix6 apartFrom(const Motions& motions, const Matrix6& told, const Matrix6& in
 void nameWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
               std::vector<WeakDirection>& directions)
 {
+  constexpr double kUnknown = 1.0;  // m, one standard deviation
   for (Eigen::Index k = 0; k < motions.cols(); ++k) {
     const Vector6 motion = motions.col(k);
     if (motion.dot(besides * motion) * kUnknown * kUnknown < 1.0) {
