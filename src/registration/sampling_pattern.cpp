@@ -19,17 +19,16 @@ constexpr double kWay = 5.0 * kRangeNoise;
 /// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns less than a third.
 constexpr double kHolds = 0.4;
 
-/// Of all motions by a metre along an axis, that of which the residuals tell least; for each axis that is to be tried.
+/// Displacements by a metre along the axes of what is known of the position that are to be tried. A turn that goes with
+/// them would be held by walls, and hide that they are not.
 Motions motionsToTry(const Matrix6& covariance)
 {
   const EigenAnalysis axes = analyse(Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()));
   Motions tried(6, 0);
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double variance = axes.values[i];
-    if (variance > kWellKnown * kWellKnown) {
-      const Vector6 motion = covariance.leftCols<3>() * axes.vectors.col(i).head<3>() / variance;
+    if (axes.values[i] > kWellKnown * kWellKnown) {
       tried.conservativeResize(6, tried.cols() + 1);
-      tried.rightCols<1>() = motion;
+      tried.rightCols<1>() << axes.vectors.col(i).head<3>(), Eigen::Vector3d::Zero();
     }
   }
   return tried;

@@ -203,8 +203,9 @@ private:
     }
     strong_ = apartFrom(left_to_prior_, Matrix6::Identity() - untold.onto, net_);
     weak_ = untold.directions;
-    const Matrix6 others = Matrix6::Identity() - strong_;
-    prior_ = others.isZero(0.0) ? of_prior_ : problem_.prior.apartFrom(others).information();
+    const Motions left = orthonormalBeside(Motions(6, 0), left_to_prior_);
+    const Matrix6 onto = untold.onto + Matrix6(left * left.transpose()) * (Matrix6::Identity() - untold.onto);
+    prior_ = onto.isZero(0.0) ? of_prior_ : problem_.prior.apartFrom(onto).information();
     return told;
   }
 
