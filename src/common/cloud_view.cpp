@@ -28,24 +28,13 @@ FieldView::Type typeOf(std::uint8_t datatype)
   }
 }
 
-std::size_t bytesOf(FieldView::Type type)
+std::size_t bytesOf(const FieldView& field)
 {
-  using Type = FieldView::Type;
-  switch (type) {
-    case Type::int8:
-    case Type::uint8: return 1;
-    case Type::int16:
-    case Type::uint16: return 2;
-    case Type::int32:
-    case Type::uint32:
-    case Type::float32: return 4;
-    case Type::float64: return 8;
-    case Type::none: return 0;
-  }
-  return 0;
+  std::size_t bytes = 0;
+  withReader(field, [&bytes](const auto& reader) { bytes = reader.kBytes; });
+  return bytes;
 }
 
-/// Byte offset of a coordinate that must be a float32.
 std::uint32_t coordinateOffset(const std::vector<pcl::PCLPointField>& fields, const char* name)
 {
   for (const auto& field : fields) {
@@ -96,9 +85,9 @@ void checkFields(const CloudView& view, std::uint32_t point_step)
   checkWithinPoint("x", view.x_offset, sizeof(float), point_step);
   checkWithinPoint("y", view.y_offset, sizeof(float), point_step);
   checkWithinPoint("z", view.z_offset, sizeof(float), point_step);
-  checkWithinPoint("ring", view.ring.offset, bytesOf(view.ring.type), point_step);
-  checkWithinPoint(std::string(view.time_name).c_str(), view.time.offset, bytesOf(view.time.type), point_step);
-  checkWithinPoint("intensity", view.intensity.offset, bytesOf(view.intensity.type), point_step);
+  checkWithinPoint("ring", view.ring.offset, bytesOf(view.ring), point_step);
+  checkWithinPoint(std::string(view.time_name).c_str(), view.time.offset, bytesOf(view.time), point_step);
+  checkWithinPoint("intensity", view.intensity.offset, bytesOf(view.intensity), point_step);
 }
 
 /// A view steps from point to point alike across the ends of rows, and reads numbers as this machine has them.

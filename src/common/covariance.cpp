@@ -2,9 +2,6 @@
 
 #include <Eigen/Cholesky>
 
-#include <algorithm>
-#include <cstddef>
-
 namespace pcl_floam {
 
 namespace {
@@ -13,32 +10,18 @@ namespace {
 using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 12, 12>;
 
 /// Column by column.
-template <std::ptrdiff_t n>
-void multiply(const double* a, const double* b, double* product)
-{
-  std::fill_n(product, n * n, 0.0);
-  for (std::ptrdiff_t j = 0; j < n; ++j) {
-    for (std::ptrdiff_t k = 0; k < n; ++k) {
-      const double factor = b[j * n + k];
-      for (std::ptrdiff_t i = 0; i < n; ++i) {
-        product[j * n + i] += a[k * n + i] * factor;
-      }
-    }
-  }
-}
-
 template <typename Matrix>
 Matrix productOf(const Matrix& a, const Matrix& b)
 {
-  Matrix product;
-  multiply<Matrix::RowsAtCompileTime>(a.data(), b.data(), product.data());
+  Matrix product = Matrix::Zero();
+  for (Eigen::Index j = 0; j < product.cols(); ++j) {
+    for (Eigen::Index k = 0; k < product.rows(); ++k) {
+      for (Eigen::Index i = 0; i < product.rows(); ++i) {
+        product(i, j) += a(i, k) * b(k, j);
+      }
+    }
+  }
   return product;
-}
-
-template <typename Matrix>
-Matrix propagatedBy(const Matrix& jacobian, const Matrix& covariance)
-{
-  return productOf(productOf(jacobian, covariance), Matrix(jacobian.transpose()));
 }
 
 Square inverse(const Square& positive)
@@ -50,12 +33,12 @@ Square inverse(const Square& positive)
 
 Matrix6 propagated(const Matrix6& jacobian, const Matrix6& covariance)
 {
-  return propagatedBy(jacobian, covariance);
+  return product(product(jacobian, covariance), Matrix6(jacobian.transpose()));
 }
 
 Matrix12 propagated(const Matrix12& jacobian, const Matrix12& covariance)
 {
-  return propagatedBy(jacobian, covariance);
+  return product(product(jacobian, covariance), Matrix12(jacobian.transpose()));
 }
 
 Matrix6 product(const Matrix6& a, const Matrix6& b)

@@ -10,12 +10,6 @@ Within within(const Matrix6& m, const Motions& directions)
   return directions.transpose() * half;
 }
 
-Matrix6 outOf(const Within& m, const Motions& directions)
-{
-  const Motions half = directions * m;
-  return half * directions.transpose();
-}
-
 EigenAnalysis analyse(const Within& m)
 {
   const Eigen::SelfAdjointEigenSolver<Within> solver(m);

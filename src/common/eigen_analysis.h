@@ -16,9 +16,6 @@ using Within = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColM
 /// D^T m D.
 [[nodiscard]] Within within(const Matrix6& m, const Motions& directions);
 
-/// D m D^T.
-[[nodiscard]] Matrix6 outOf(const Within& m, const Motions& directions);
-
 struct EigenAnalysis {
   Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1> values;  ///< rising
   Within vectors;                                                          ///< in columns

@@ -12,6 +12,7 @@ namespace pcl_floam {
 /// Reads one field of type \p T from point after point.
 template <typename T>
 struct FieldReader {
+  static constexpr std::size_t kBytes = sizeof(T);
   std::uint32_t offset;
 
   double operator()(const std::uint8_t* point) const

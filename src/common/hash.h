@@ -2,10 +2,13 @@
 /// Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4) for tables whose sizes are powers of two.
 #pragma once
 
+#include "common/prefetch.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -23,5 +26,94 @@ namespace pcl_floam {
   std::memcpy(bits.data(), place.data(), sizeof(bits));
   return (std::uint64_t{bits[0]} << 32U | bits[1]) ^ (std::uint64_t{bits[2]} << 16U);
 }
+
+/// Values by 64-bit keys other than 0: open addressing.
+template <typename Value>
+class HashTable {
+public:
+  HashTable() { clear(); }
+
+  /// \return Value() for a key that is not there
+  [[nodiscard]] Value find(std::uint64_t key) const { return slots_[placeOf(key)].value; }
+
+  /// Lets the processor fetch what \ref find will look at.
+  void expect(std::uint64_t key) const { prefetch(&slots_[hashOf(key, shift_)], sizeof(Slot)); }
+
+  /// Begins with Value(). Others may move when a key comes in.
+  [[nodiscard]] Value& operator[](std::uint64_t key)
+  {
+    std::size_t i = placeOf(key);
+    if (slots_[i].key == 0) {
+      if (2 * ++used_ > slots_.size()) {
+        grow();
+        i = placeOf(key);
+      }
+      slots_[i].key = key;
+    }
+    return slots_[i].value;
+  }
+
+  /// The key must be there. What had to make way for it moves up.
+  void erase(std::uint64_t key)
+  {
+    std::size_t hole = placeOf(key);
+    for (std::size_t i = next(hole); slots_[i].key != 0; i = next(i)) {
+      const std::size_t mask = slots_.size() - 1;
+      if (((i - hashOf(slots_[i].key, shift_)) & mask) >= ((i - hole) & mask)) {
+        slots_[hole] = slots_[i];
+        hole = i;
+      }
+    }
+    slots_[hole] = {};
+    --used_;
+  }
+
+  /// Keeps room for as many again; smaller tables stay in the cache.
+  void clear()
+  {
+    std::size_t slots = 1024;
+    for (shift_ = 64 - 10; slots < 3 * used_; slots *= 2) {
+      --shift_;
+    }
+    slots_.assign(slots, {});
+    used_ = 0;
+  }
+
+  [[nodiscard]] std::size_t size() const { return used_; }
+
+private:
+  struct Slot {
+    std::uint64_t key = 0;
+    Value value = {};
+  };
+
+  [[nodiscard]] std::size_t next(std::size_t i) const { return (i + 1) & (slots_.size() - 1); }
+
+  /// Where a key is, or where it would come.
+  [[nodiscard]] std::size_t placeOf(std::uint64_t key) const
+  {
+    std::size_t i = hashOf(key, shift_);
+    while (slots_[i].key != 0 && slots_[i].key != key) {
+      i = next(i);
+    }
+    return i;
+  }
+
+  void grow()
+  {
+    std::vector<Slot> old(2 * slots_.size());
+    old.swap(slots_);
+    --shift_;
+    for (const Slot& slot : old) {
+      if (slot.key != 0) {
+        slots_[placeOf(slot.key)] = slot;
+      }
+    }
+  }
+
+  std::vector<Slot> slots_;
+  unsigned shift_ = 0;  // leaves as many bits of a hash as number the slots
+  std::size_t used_ = 0;
+};
 
 }  // namespace pcl_floam

@@ -11,9 +11,7 @@ Eigen::Matrix3d skew(const Eigen::Vector3d& v)
 
 Matrix6 adjoint(const SE3& t)
 {
-  Matrix6 a = Matrix6::Zero();
-  a.topLeftCorner<3, 3>() = t.rotation;
-  a.bottomRightCorner<3, 3>() = t.rotation;
+  Matrix6 a = turnOf(t.rotation);
   a.topRightCorner<3, 3>() = skew(t.translation) * t.rotation;
   return a;
 }

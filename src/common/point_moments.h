@@ -33,13 +33,19 @@ public:
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] Eigen::Vector3d mean() const { return sum() / static_cast<double>(count_); }
 
+  /// Sums of the coordinates' products.
+  [[nodiscard]] Eigen::Matrix3d squares() const
+  {
+    Eigen::Matrix3d squares;
+    squares << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
+    return squares;
+  }
+
   [[nodiscard]] PrincipalAxes axes() const
   {
     const double count = count_;
-    Eigen::Matrix3d squares;
-    squares << xx_, xy_, xz_, xy_, yy_, yz_, xz_, yz_, zz_;
     Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(squares / count - sum() * sum().transpose() / (count * count));
+    solver.computeDirect(squares() / count - sum() * sum().transpose() / (count * count));
     return {solver.eigenvalues(), solver.eigenvectors()};
   }
 

@@ -9,15 +9,10 @@ namespace pcl_floam {
 /// Lets the processor fetch \p bytes from \p address on while it goes on with other work. Any address will do.
 inline void prefetch(const void* address, std::size_t bytes)
 {
-#if defined(__GNUC__)
   constexpr std::size_t kCacheLine = 64;
   for (std::size_t offset = 0; offset < bytes; offset += kCacheLine) {
     __builtin_prefetch(static_cast<const char*>(address) + offset);
   }
-#else
-  static_cast<void>(address);
-  static_cast<void>(bytes);
-#endif
 }
 
 }  // namespace pcl_floam

@@ -31,8 +31,8 @@ void eachSideBySide(int threads, std::size_t count, const Work& work)
     return;
   }
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 1)
-  for (std::ptrdiff_t i = 0; i < static_cast<std::ptrdiff_t>(count); ++i) {
-    work(static_cast<std::size_t>(i));
+  for (std::size_t i = 0; i < count; ++i) {
+    work(i);
   }
 }
 

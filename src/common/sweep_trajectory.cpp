@@ -2,8 +2,6 @@
 
 #include "common/multi_version.h"
 
-#include <algorithm>
-
 namespace pcl_floam {
 
 namespace {

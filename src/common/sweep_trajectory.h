@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <vector>
 
 namespace pcl_floam {
 
@@ -41,8 +42,9 @@ public:
   /// instant.
   /// \tparam Point has x, y, z in the sensor's frame and the time as a fraction of the sweep; out of [0, 1] it is taken
   ///               for the nearer end
-  template <typename Point>
-  void undistorted(const Point* points, std::size_t stride, std::size_t count, Eigen::Vector3d* places) const
+  /// \param take is called with the number and the place of each
+  template <typename Point, typename Take>
+  void undistorted(const Point* points, std::size_t stride, std::size_t count, const Take& take) const
   {
     Batch batch{};
     for (std::size_t begin = 0; begin < count; begin += Batch::kMost) {
@@ -56,8 +58,20 @@ public:
       }
       undistort(batch);
       for (std::size_t i = 0; i < n; ++i) {
-        places[begin + i] = {batch.x[i], batch.y[i], batch.z[i]};
+        take(begin + i, Eigen::Vector3d(batch.x[i], batch.y[i], batch.z[i]));
       }
+    }
+  }
+
+  /// The same of all points, by some threads, each of which calls \p take.
+  template <typename Point, typename Take>
+  void undistorted(const std::vector<Point>& points, int threads, const Take& take) const
+  {
+    constexpr std::size_t kTogether = 256;
+#pragma omp parallel for num_threads(threads) schedule(static)
+    for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
+      undistorted(&points[begin], 1, std::min(kTogether, points.size() - begin),
+                  [&](std::size_t i, const Eigen::Vector3d& place) { take(begin + i, place); });
     }
   }
 

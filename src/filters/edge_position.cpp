@@ -46,16 +46,10 @@ constexpr int kForCorner = 4;
 /// is then anywhere along them.
 constexpr float kFlatCorner = 0.75F;
 
-Eigen::Vector3f pointAt(const LinePoints& line, int n)
-{
-  const auto k = static_cast<std::size_t>(n);
-  return {line.x[k], line.y[k], line.z[k]};
-}
-
 /// As good as the angle where it is small, rad.
 float angleBetween(const LinePoints& line, int a, int b)
 {
-  return (pointAt(line, b).normalized() - pointAt(line, a).normalized()).norm();
+  return (line.at(b).normalized() - line.at(a).normalized()).norm();
 }
 
 /// What is next to the last point of a surface.
@@ -90,10 +84,10 @@ Border borderBetween(const LinePoints& line, int inner, int outer, float noise)
 /// Follows the surface of point \p n until it ends, or is more than thin.
 Side follow(const LinePoints& line, int n, int outward, float noise)
 {
-  const Eigen::Vector3f start = pointAt(line, n);
+  const Eigen::Vector3f start = line.at(n);
   for (int k = n;; k += outward) {
     const Border border = borderBetween(line, k, k + outward, noise);
-    if (border != Border::none || (pointAt(line, k) - start).squaredNorm() > kThin * kThin) {
+    if (border != Border::none || (line.at(k) - start).squaredNorm() > kThin * kThin) {
       return {k, border, outward};
     }
   }
@@ -103,7 +97,7 @@ Side follow(const LinePoints& line, int n, int outward, float noise)
 std::optional<LineEdge> axisOf(const LinePoints& line, const Side& left, const Side& right)
 {
   if (left.border != Border::behind || right.border != Border::behind ||
-      (pointAt(line, right.last) - pointAt(line, left.last)).norm() > kThin) {
+      (line.at(right.last) - line.at(left.last)).norm() > kThin) {
     return std::nullopt;
   }
   const int count = right.last - left.last + 1;
@@ -118,7 +112,7 @@ std::optional<LineEdge> axisOf(const LinePoints& line, const Side& left, const S
   const float angle = seen + 0.5F * (std::min(to_left, next) + std::min(to_right, next));
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
   for (int k = left.last; k <= right.last; ++k) {
-    middle += pointAt(line, k);
+    middle += line.at(k);
   }
   middle /= static_cast<float>(count);
   const float width = angle * middle.norm();
@@ -131,12 +125,12 @@ std::optional<LineEdge> axisOf(const LinePoints& line, const Side& left, const S
 /// Half a step beyond the last point of a surface, or less, whose \p other side has the points before it.
 Eigen::Vector3f endOf(const LinePoints& line, const Side& side, const Side& other)
 {
-  Eigen::Vector3f last = pointAt(line, side.last);
+  Eigen::Vector3f last = line.at(side.last);
   const int steps = std::min(kForSpacing, std::abs(other.last - side.last));
   if (steps == 0) {
     return last;
   }
-  const Eigen::Vector3f step = (last - pointAt(line, side.last - side.outward * steps)) / static_cast<float>(steps);
+  const Eigen::Vector3f step = (last - line.at(side.last - side.outward * steps)) / static_cast<float>(steps);
   const float half = 0.5F * step.norm();
   const float half_across = 0.5F * step.cross(last.normalized()).norm();
   return half > 0.0F && half < kFarthestMove
@@ -156,8 +150,8 @@ StraightLine lineThrough(const LinePoints& line, int first, int last)
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Vector3f moment = Eigen::Vector3f::Zero();
   for (int k = first; k <= last; ++k) {
-    sum += pointAt(line, k);
-    moment += (static_cast<float>(k) - middle) * pointAt(line, k);
+    sum += line.at(k);
+    moment += (static_cast<float>(k) - middle) * line.at(k);
   }
   return {sum / static_cast<float>(last - first + 1), moment.normalized()};
 }
@@ -165,7 +159,7 @@ StraightLine lineThrough(const LinePoints& line, int first, int last)
 /// Where the surfaces on both sides of point \p n meet; the point itself where that is not clear.
 Eigen::Vector3f cornerAt(const LinePoints& line, int n, const Side& left, const Side& right)
 {
-  Eigen::Vector3f point = pointAt(line, n);
+  Eigen::Vector3f point = line.at(n);
   const int first = std::max(left.last, n - kForCorner);
   const int last = std::min(right.last, n + kForCorner);
   if (n - first < 2 || last - n < 2) {
@@ -199,7 +193,7 @@ LineEdge locateEdge(const LinePoints& line, int n, float noise)
   if (const auto axis = axisOf(line, left, right)) {
     return *axis;
   }
-  LineEdge edge{pointAt(line, n), n, n};
+  LineEdge edge{line.at(n), n, n};
   const bool ends_left = left.last == n && left.border == Border::behind;
   const bool ends_right = right.last == n && right.border == Border::behind;
   if (ends_left != ends_right) {

@@ -4,8 +4,6 @@
 
 #include "filters/line_points.h"
 
-#include <Eigen/Core>
-
 namespace pcl_floam {
 
 /// An edge of a scan line.

@@ -1,16 +1,33 @@
 #include "filters/feature_selection.h"
 
+#include "common/parameter_check.h"
+#include "common/sort_key.h"
 #include "filters/edge_position.h"
 #include "filters/point_times.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 namespace pcl_floam {
+
+const char* toString(SmoothnessKind kind)
+{
+  return kind == SmoothnessKind::vector_sum ? "vector-sum" : "mean-of-norms";
+}
+
+void validate(const FeatureParameters& p)
+{
+  const ParameterCheck check("feature extraction");
+  check.range("edges_per_sector", p.edges_per_sector, 0, 100);
+  check.range("planes_per_sector", p.planes_per_sector, 0, 1000);
+  check.atLeast("min_range", p.min_range, 0.0);
+  check.above("max_range", p.max_range, p.min_range);
+  check.atLeast("edge_threshold", p.edge_threshold, 0.0);
+  check.above("plane_threshold", p.plane_threshold, 0.0);
+}
 
 namespace {
 
@@ -30,9 +47,7 @@ int placeOfLeast(const std::vector<float>& numbers, int first, int last)
   // Bits of such floats rise with their values: number and place together are compared at once, without a branch.
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
   for (int n = first; n < last; ++n) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &numbers[static_cast<std::size_t>(n)], sizeof(bits));
-    least = std::min(least, static_cast<std::uint64_t>(bits) << 32 | static_cast<std::uint32_t>(n));
+    least = std::min(least, sortKey(numbers[static_cast<std::size_t>(n)], static_cast<std::uint32_t>(n)));
   }
   return static_cast<int>(static_cast<std::uint32_t>(least));
 }
@@ -156,34 +171,24 @@ private:
     feature.z = edge.position.z();
     feature.time = timeOf(edge.middle());
     features_.edges.push_back(feature);
-    takeNeighborhood(std::min(sharpest, edge.first), std::max(sharpest, edge.last));
-    line_.wide.forgetAround(line_.points, sharpest, line_.sharpness);
-  }
-
-  /// What is part of an edge's neighbourhood is neither another edge nor a plane.
-  void takeNeighborhood(int from, int to)
-  {
-    const int first = std::max(0, from - neighbors_);
-    const int last = std::min(line_.points.size() - 1, to + neighbors_);
+    // What is part of its neighbourhood is neither another edge nor a plane.
+    const int first = std::max(0, std::min(sharpest, edge.first) - neighbors_);
+    const int last = std::min(line_.points.size() - 1, std::max(sharpest, edge.last) + neighbors_);
     for (int k = first; k <= last; ++k) {
       line_.sharpness[static_cast<std::size_t>(k)] = 0.0F;
       line_.flatness[static_cast<std::size_t>(k)] = kNeverFlat;
     }
+    line_.wide.forgetAround(line_.points, sharpest, line_.sharpness);
   }
 
   [[nodiscard]] Feature makeFeature(int n) const
   {
+    constexpr float kEnd = 1.0F;  // unless there are times
     const auto k = static_cast<std::size_t>(n);
-    Feature feature;
-    feature.x = line_.points.x[k];
-    feature.y = line_.points.y[k];
-    feature.z = line_.points.z[k];
-    feature.smoothness = line_.sigma[k];
-    feature.index = lines_.index[first_index_ + k];
-    feature.time = 1.0F;  // unless there are times
-    feature.line = line_number_;
-    feature.intensity = cloud_.intensityOf(static_cast<std::size_t>(feature.index));
-    return feature;
+    const std::int32_t index = lines_.index[first_index_ + k];
+    const float intensity = cloud_.intensityOf(static_cast<std::size_t>(index));
+    const LinePoints& points = line_.points;
+    return {points.x[k], points.y[k], points.z[k], kEnd, line_.sigma[k], index, intensity, line_number_};
   }
 
   [[nodiscard]] float timeOf(int n) const
@@ -231,8 +236,7 @@ void extractFeatures(const CloudView& cloud, const ScanLines& lines, const ScanT
     std::swap(selections.front().features, features);  // its memory is used again
   }
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 1)
-  for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
-    const auto part = static_cast<std::size_t>(p);
+  for (std::size_t part = 0; part < parts; ++part) {
     FeatureSelection& selection = selections[part];
     selection.features.clear();
     LineSelector selector(cloud, lines, timing, parameters, selectable, selection);

@@ -16,31 +16,25 @@ namespace pcl_floam {
 /// takes points that follow each other: the result does not depend on how many there are.
 class LineGrouping {
 public:
-  static constexpr int kNotMeasurable = -2;
-  static constexpr int kNoLine = -1;  ///< measurable, but on none
+  static constexpr int kNoLine = -1;
 
   /// Begins with another cloud, in the same memory.
   /// \param threads >= 1
-  void begin(std::size_t points, int threads)
+  /// \param lineOf  gives the line of the measurable point \p i in [0, kMaxScanLines), or \ref kNoLine; called from
+  ///                all threads
+  template <typename LineOf>
+  void assign(const CloudView& points, int threads, const LineOf& lineOf)
   {
     parts_ = static_cast<std::size_t>(threads);
-    line_of_point_.resize(points);
+    line_of_point_.resize(points.size);
     counts_.assign(parts_ * kCounts, 0);
-  }
-
-  /// \param lineOf gives the line of point \p i in [0, kMaxScanLines), \ref kNoLine or \ref kNotMeasurable; called from
-  ///               all threads
-  template <typename LineOf>
-  void assign(const LineOf& lineOf)
-  {
-    const auto parts = static_cast<int>(parts_);
-#pragma omp parallel for num_threads(parts) schedule(static, 1)
-    for (int p = 0; p < parts; ++p) {
-      const auto part = static_cast<std::size_t>(p);
-      const LineOf line_of = lineOf;  // nobody else's, so that what it holds is read but once
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (std::size_t part = 0; part < parts_; ++part) {
+      const CloudView cloud = points;  // nobody else's, as the next one: what they hold is read but once
+      const LineOf line_of = lineOf;
       std::int32_t* count = &counts_[part * kCounts + kBefore];
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
-        const int line = line_of(i);
+        const int line = isMeasurable(cloud, i) ? line_of(i) : kNotMeasurable;
         line_of_point_[i] = static_cast<std::int16_t>(line);
         ++count[line];
       }
@@ -92,10 +86,9 @@ public:
     }
     lines.begin.back() = listed;
     lines.index.resize(static_cast<std::size_t>(listed));
-    const auto parts = static_cast<int>(parts_);
-#pragma omp parallel for num_threads(parts) schedule(static, 1)
-    for (int p = 0; p < parts; ++p) {
-      const auto part = static_cast<std::size_t>(p);
+    const auto threads = static_cast<int>(parts_);
+#pragma omp parallel for num_threads(threads) schedule(static, 1)
+    for (std::size_t part = 0; part < parts_; ++part) {
       for (std::size_t i = firstOf(part); i < firstOf(part + 1); ++i) {
         if (line_of_point_[i] >= 0) {
           std::int32_t& place = next_[part * count + static_cast<std::size_t>(line_of_point_[i])];
@@ -106,6 +99,7 @@ public:
   }
 
 private:
+  static constexpr int kNotMeasurable = -2;
   static constexpr std::size_t kBefore = 2;  ///< places of the counts before line 0: kNotMeasurable and kNoLine
   static constexpr std::size_t kCounts = kBefore + kMaxScanLines;
 

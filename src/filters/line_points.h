@@ -6,6 +6,8 @@
 #include <pcl_floam/common/core/cloud_view.h>
 #include <pcl_floam/filters/scan_lines.h>
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <vector>
 
@@ -18,6 +20,11 @@ struct LinePoints {
   std::vector<float> squared_step;  ///< squared distance to the next point, m^2; 0 for the last
 
   [[nodiscard]] int size() const { return static_cast<int>(x.size()); }
+  [[nodiscard]] Eigen::Vector3f at(int n) const
+  {
+    const auto k = static_cast<std::size_t>(n);
+    return {x[k], y[k], z[k]};
+  }
 
   void gather(const CloudView& cloud, const ScanLines& lines, std::size_t m);
 

@@ -2,7 +2,6 @@
 
 #include "common/median.h"
 #include "common/multi_version.h"
-#include "filters/line_points.h"
 #include "filters/selectability.h"
 #include "filters/smoothness.h"
 

@@ -16,11 +16,7 @@ namespace {
 float groupByElevation(const CloudView& cloud, const std::vector<float>& elevations, float tolerance, int threads,
                        LineGrouping& grouping, ScanLines& lines)
 {
-  grouping.begin(cloud.size, threads);
-  grouping.assign([&](std::size_t i) {
-    if (!isMeasurable(cloud, i)) {
-      return LineGrouping::kNotMeasurable;
-    }
+  grouping.assign(cloud, threads, [&](std::size_t i) {
     const float elevation = elevationOf(cloud, i);
     const auto above = std::lower_bound(elevations.begin(), elevations.end(), elevation);
     auto nearest = above == elevations.end() ? above - 1 : above;
@@ -41,11 +37,11 @@ float groupByElevation(const CloudView& cloud, const std::vector<float>& elevati
 }
 
 /// Number of points per elevation bin.
+constexpr float kHalfPi = 1.5707964F;
 constexpr float kBin = static_cast<float>(0.05 * kPi / 180.0);
 
 std::vector<int> elevationHistogram(const CloudView& cloud)
 {
-  constexpr float kHalfPi = 1.5707964F;
   std::vector<int> histogram(static_cast<std::size_t>(2.0F * kHalfPi / kBin) + 2, 0);
   for (std::size_t i = 0; i < cloud.size; ++i) {
     if (isMeasurable(cloud, i)) {
@@ -58,7 +54,6 @@ std::vector<int> elevationHistogram(const CloudView& cloud)
 /// Centres of the histogram's runs of well-filled bins that empty bins separate.
 std::vector<float> clusterCenters(const std::vector<int>& histogram, int min_count)
 {
-  constexpr float kHalfPi = 1.5707964F;
   std::vector<float> centers;
   double weighted = 0.0;
   int count = 0;

@@ -200,8 +200,7 @@ Cuts cutsOf(const CloudView& cloud, const std::vector<std::int32_t>& index, int 
   const auto parts = static_cast<std::size_t>(threads);
   Cuts cuts;
 #pragma omp parallel for ordered num_threads(threads) schedule(static, 1)
-  for (std::ptrdiff_t p = 0; p < static_cast<std::ptrdiff_t>(parts); ++p) {
-    const auto part = static_cast<std::size_t>(p);
+  for (std::size_t part = 0; part < parts; ++part) {
     Cuts found;
     PointRun run;
     StepCounts front;

@@ -20,6 +20,15 @@ inline bool isMeasurable(const CloudView& cloud, std::size_t i)
 }
 
 /// Angle above the sensor's xy plane, rad.
+inline std::size_t firstMeasurable(const CloudView& cloud)
+{
+  std::size_t i = 0;
+  while (i < cloud.size && !isMeasurable(cloud, i)) {
+    ++i;
+  }
+  return i;
+}
+
 inline float elevationOf(const CloudView& cloud, std::size_t i)
 {
   return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));

@@ -1,12 +1,12 @@
 // Scan lines that the cloud's fields and layout tell: ring field, organised rows.
 #include "common/azimuth.h"
 #include "common/field_type.h"
+#include "common/sort_key.h"
 #include "filters/line_grouping.h"
 #include "filters/scan_line_finders.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace pcl_floam {
 
@@ -46,9 +46,7 @@ void sortByAzimuth(const CloudView& cloud, std::int32_t* points, std::size_t cou
   for (std::size_t n = 0; n < count; ++n) {
     const auto i = static_cast<std::size_t>(points[n]);
     const float azimuth = pseudoAzimuth(cloud.x(i), cloud.y(i)) + 0.0F;  // no negative zero
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &azimuth, sizeof(bits));
-    keys[n] = std::uint64_t{bits} << 32U | i;
+    keys[n] = sortKey(azimuth, static_cast<std::uint32_t>(i));
   }
   std::sort(keys.begin(), keys.end());
   for (std::size_t n = 0; n < count; ++n) {
@@ -61,12 +59,11 @@ void sortByAzimuth(const CloudView& cloud, std::int32_t* points, std::size_t cou
 void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
 {
   constexpr std::int32_t kSampled = 5;  // one step in so many tells as much as all; odd, since drivers' habits are even
-  const auto line_count = static_cast<std::ptrdiff_t>(lines.lines());
+  const std::size_t line_count = lines.lines();
   std::size_t rising = 0;
   std::size_t falling = 0;
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(+ : rising, falling)
-  for (std::ptrdiff_t line = 0; line < line_count; ++line) {
-    const auto m = static_cast<std::size_t>(line);
+  for (std::size_t m = 0; m < line_count; ++m) {
     for (std::int32_t n = lines.begin[m] + 1; n < lines.begin[m + 1]; n += kSampled) {
       const auto a = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n) - 1]);
       const auto b = static_cast<std::size_t>(lines.index[static_cast<std::size_t>(n)]);
@@ -82,8 +79,7 @@ void ensureSweepOrder(const CloudView& cloud, ScanLines& lines, int threads)
   }
   lines.sorted_by_azimuth = true;
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::ptrdiff_t line = 0; line < line_count; ++line) {
-    const auto m = static_cast<std::size_t>(line);
+  for (std::size_t m = 0; m < line_count; ++m) {
     sortByAzimuth(cloud, lines.index.data() + lines.begin[m],
                   static_cast<std::size_t>(lines.begin[m + 1] - lines.begin[m]));
   }
@@ -95,12 +91,8 @@ bool linesFromRingField(const CloudView& cloud, const SensorModel& /*sensor*/, i
   if (!cloud.ring.exists()) {
     return false;
   }
-  grouping.begin(cloud.size, threads);
   withReader(cloud.ring, [&](const auto& ring_of) {
-    grouping.assign([cloud, ring_of](std::size_t i) {
-      if (!isMeasurable(cloud, i)) {
-        return LineGrouping::kNotMeasurable;
-      }
+    grouping.assign(cloud, threads, [cloud, ring_of](std::size_t i) {
       const double ring = ring_of(cloud.point(i));
       const bool is_line = ring >= 0.0 && ring < kMaxScanLines && ring == static_cast<std::int32_t>(ring);
       return is_line ? static_cast<int>(ring) : LineGrouping::kNoLine;
@@ -129,11 +121,7 @@ bool linesFromOrganizedRows(const CloudView& cloud, const SensorModel& /*sensor*
   if (line_count > kMaxScanLines) {
     return false;
   }
-  grouping.begin(cloud.size, threads);
-  grouping.assign([&](std::size_t i) {
-    if (!isMeasurable(cloud, i)) {
-      return LineGrouping::kNotMeasurable;
-    }
+  grouping.assign(cloud, threads, [&](std::size_t i) {
     return static_cast<int>(lines.transposed ? i % cloud.width : i / cloud.width);
   });
   grouping.list(static_cast<int>(line_count), lines);

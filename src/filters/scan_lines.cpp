@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pcl_floam {
 
@@ -38,29 +39,14 @@ namespace {
 
 using Finder = bool (*)(const CloudView&, const SensorModel&, int, LineGrouping&, ScanLines&);
 
-struct NamedFinder {
-  ScanLineSource source;
-  Finder find;
-};
-
 /// In the order of trust: what the driver says, what the cloud's layout says, what geometry says.
-constexpr NamedFinder kFinders[] = {
+constexpr std::pair<ScanLineSource, Finder> kFinders[] = {
     {ScanLineSource::ring_field, linesFromRingField},
     {ScanLineSource::organized_rows, linesFromOrganizedRows},
     {ScanLineSource::file_order, linesFromFileOrder},
     {ScanLineSource::elevation_table, linesFromElevationTable},
     {ScanLineSource::elevation_clusters, linesFromElevationClusters},
 };
-
-bool hasMeasurablePoint(const CloudView& cloud)
-{
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (isMeasurable(cloud, i)) {
-      return true;
-    }
-  }
-  return false;
-}
 
 /// Along a scan line the azimuth changes, not the elevation: a lidar whose head does not turn numbers its lasers, too,
 /// and a frame may be turned so that the rings stand upright in it.
@@ -112,17 +98,17 @@ void findScanLines(const CloudView& cloud, const SensorModel& sensor, ScanLineSo
     lines.failure = ScanLineFailure::not_looked_for;
     return;
   }
-  if (!hasMeasurablePoint(cloud)) {
+  if (firstMeasurable(cloud) == cloud.size) {
     lines.failure = ScanLineFailure::empty_cloud;
     return;
   }
-  for (const NamedFinder& finder : kFinders) {
-    if (source != ScanLineSource::automatic && source != finder.source) {
+  for (const auto& [own, find] : kFinders) {
+    if (source != ScanLineSource::automatic && source != own) {
       continue;
     }
-    if (finder.find(cloud, sensor, std::max(threads, 1), grouping, lines) &&
+    if (find(cloud, sensor, std::max(threads, 1), grouping, lines) &&
         (source != ScanLineSource::automatic || runAlongTheAzimuth(cloud, lines))) {
-      lines.source = finder.source;
+      lines.source = own;
       return;
     }
     start_over();

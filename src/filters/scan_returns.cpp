@@ -16,12 +16,6 @@ namespace {
 /// tell apart.
 constexpr std::size_t kCurves = 64;
 
-/// In a single layer a curve is all that there is of what it hits, so each return testifies for itself.
-std::size_t curvesOf(const ScanReturns& returns)
-{
-  return returns.lines.failure == ScanLineFailure::single_layer ? returns.cloud.size : kCurves;
-}
-
 /// \return 1, or 0 if the point is out of range
 inline std::size_t take(const CloudView& cloud, const RangeLimits& squared, std::size_t i, std::size_t n,
                         ReturnBatch& batch)
@@ -40,9 +34,7 @@ inline std::size_t take(const CloudView& cloud, const RangeLimits& squared, std:
 }  // namespace
 
 ReturnReader::ReturnReader(const ScanReturns& returns)
-    : returns_(returns),
-      limits_{static_cast<float>(returns.min_range * returns.min_range),
-              static_cast<float>(returns.max_range * returns.max_range)}
+    : returns_(returns), limits_{returns.min_range * returns.min_range, returns.max_range * returns.max_range}
 {
 }
 
@@ -81,7 +73,8 @@ void ReturnReader::readCloud(ReturnBatch& batch)
 {
   const std::size_t size = returns_.cloud.size;
   const std::size_t end = std::min(size, place_ + ReturnBatch::kMost);
-  const std::size_t curves = curvesOf(returns_);
+  // In a single layer a curve is all that there is of what it hits, so each return testifies for itself.
+  const std::size_t curves = returns_.lines.failure == ScanLineFailure::single_layer ? size : kCurves;
   for (; place_ < end; ++place_) {
     if (isMeasurable(returns_.cloud, place_)) {
       batch.laser[batch.count] = static_cast<std::uint32_t>(curves * place_ / size);

@@ -20,8 +20,8 @@ struct ScanReturns {
   const CloudView& cloud;
   const ScanLines& lines;
   const ScanTiming& timing;
-  double min_range;            ///< m
-  double max_range;            ///< m
+  float min_range;             ///< m
+  float max_range;             ///< m
   double vertical_correction;  ///< degrees by which every point is turned up
 
   [[nodiscard]] bool areAtLeast(std::size_t count) const;

@@ -54,8 +54,7 @@ bool timingFromField(const CloudView& cloud, int threads, ScanTiming& timing)
   double last = -first;
   withReader(cloud.time, [&](const auto& time_of) {
 #pragma omp parallel for num_threads(threads) schedule(static) reduction(min : first) reduction(max : last)
-    for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(cloud.size); ++n) {
-      const auto i = static_cast<std::size_t>(n);
+    for (std::size_t i = 0; i < cloud.size; ++i) {
       const double t = time_of(cloud.point(i));
       if ((t < first || t > last) && std::isfinite(t) && isMeasurable(cloud, i)) {
         first = std::min(first, t);
@@ -135,17 +134,6 @@ bool goesRound(const CloudView& cloud, const ScanLines& lines)
 
 namespace {
 
-/// Azimuth of the first measurable point, in rad.
-double firstAzimuth(const CloudView& cloud)
-{
-  for (std::size_t i = 0; i < cloud.size; ++i) {
-    if (isMeasurable(cloud, i)) {
-      return std::atan2(static_cast<double>(cloud.y(i)), static_cast<double>(cloud.x(i)));
-    }
-  }
-  return 0.0;
-}
-
 bool timingFromColumns(const CloudView& cloud, const ScanLines& lines, ScanTiming& timing)
 {
   if (lines.source != ScanLineSource::organized_rows || lines.transposed || lines.sorted_by_azimuth ||
@@ -173,7 +161,9 @@ bool timingFromAzimuth(const CloudView& cloud, const ScanLines& lines, ScanTimin
       return false;
     }
     timing.clockwise = direction < 0;
-    timing.start_azimuth = firstAzimuth(cloud);
+    const std::size_t first = firstMeasurable(cloud);
+    timing.start_azimuth =
+        first < cloud.size ? std::atan2(static_cast<double>(cloud.y(first)), static_cast<double>(cloud.x(first))) : 0.0;
     const bool is_against = is_given && timing.clockwise != is_clockwise;
     timing.firing_order = !is_against && isInFiringOrder(cloud, timing);
   } else if (!is_given) {
@@ -231,24 +221,18 @@ void timesByAzimuth(const CloudView& cloud, const ScanTiming& timing, const std:
 
 float ScanTiming::at(const CloudView& cloud, std::size_t i) const
 {
-  double fraction = 1.0;
-  switch (source) {
-    case ScanTimingSource::time_field: return fractionOf(cloud.time.read(cloud.point(i)));
-    case ScanTimingSource::columns:
-      fraction = static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1);
-      break;
-    case ScanTimingSource::azimuth: {
-      const auto index = static_cast<std::int32_t>(i);
-      float time = 0.0F;
-      timesByAzimuth(cloud, *this, &index, 1, &time);
-      return time;
-    }
-    case ScanTimingSource::automatic:
-    case ScanTimingSource::clockwise:
-    case ScanTimingSource::counterclockwise:
-    case ScanTimingSource::none: break;
+  if (source == ScanTimingSource::time_field) {
+    return fractionOf(cloud.time.read(cloud.point(i)));
   }
-  return withinSweep(fraction);
+  if (source == ScanTimingSource::azimuth) {
+    const auto index = static_cast<std::int32_t>(i);
+    float time = 0.0F;
+    timesByAzimuth(cloud, *this, &index, 1, &time);
+    return time;
+  }
+  return source == ScanTimingSource::columns
+             ? withinSweep(static_cast<double>(i % cloud.width) / static_cast<double>(cloud.width - 1))
+             : 1.0F;
 }
 
 double ScanTiming::sinceStamp(double fraction, double stamp) const
@@ -268,18 +252,13 @@ ScanTiming findScanTiming(const CloudView& cloud, const ScanLines& lines, ScanTi
 {
   ScanTiming timing;
   const bool any = source == ScanTimingSource::automatic;
-  if ((any || source == ScanTimingSource::time_field) && timingFromField(cloud, std::max(threads, 1), timing)) {
-    return timing;
-  }
-  if ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) {
-    return timing;
-  }
   const bool by_azimuth = source == ScanTimingSource::azimuth || source == ScanTimingSource::clockwise ||
                           source == ScanTimingSource::counterclockwise;
-  if ((by_azimuth || (any && goesRound(cloud, lines))) && timingFromAzimuth(cloud, lines, source, timing)) {
-    return timing;
-  }
-  return {};
+  const bool is_found =
+      ((any || source == ScanTimingSource::time_field) && timingFromField(cloud, std::max(threads, 1), timing)) ||
+      ((any || source == ScanTimingSource::columns) && timingFromColumns(cloud, lines, timing)) ||
+      ((by_azimuth || (any && goesRound(cloud, lines))) && timingFromAzimuth(cloud, lines, source, timing));
+  return is_found ? timing : ScanTiming();
 }
 
 }  // namespace pcl_floam

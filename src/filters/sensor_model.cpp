@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <utility>
 
@@ -43,34 +42,27 @@ std::vector<float> vlp32c()
           0.667F, 1.0F,     1.333F,  1.667F,  2.333F,  3.333F,  4.667F,  7.0F,    10.333F, 15.0F};
 }
 
-using Table = std::vector<std::pair<std::string, std::function<std::vector<float>()>>>;
+/// Names, and elevations in degrees; none where they are not known.
+using Table = std::vector<std::pair<std::string, std::vector<float>>>;
 
-Table makeTable()
+Table sensorTable()
 {
-  const auto none = [] { return std::vector<float>{}; };
-  Table table{{"auto", none},
-              {kSolidState, none},
-              {"vlp16", [] { return evenly(16, -15.0F, 15.0F); }},
-              {"vlp32c", vlp32c},
-              {"hdl32", [] { return evenly(32, -30.67F, 10.67F); }},
-              {"hdl64", hdl64}};
+  Table table{{"auto", {}},
+              {kSolidState, {}},
+              {"vlp16", evenly(16, -15.0F, 15.0F)},
+              {"vlp32c", vlp32c()},
+              {"hdl32", evenly(32, -30.67F, 10.67F)},
+              {"hdl64", hdl64()}};
   const std::vector<std::pair<std::string, float>> ousters{
       {"os", 22.5F}, {"os0-", 45.0F}, {"os1-", 22.5F}, {"os2-", 11.25F}};
   for (const auto& [prefix, half_view] : ousters) {
     for (const int beams : {32, 64, 128}) {
-      const float half = half_view;
-      table.emplace_back(prefix + std::to_string(beams), [beams, half] { return evenly(beams, -half, half); });
+      table.emplace_back(prefix + std::to_string(beams), evenly(beams, -half_view, half_view));
     }
   }
-  table.emplace_back("pandarxt16", [] { return evenly(16, -15.0F, 15.0F); });
-  table.emplace_back("pandarxt32", [] { return evenly(32, -16.0F, 15.0F); });
+  table.emplace_back("pandarxt16", evenly(16, -15.0F, 15.0F));
+  table.emplace_back("pandarxt32", evenly(32, -16.0F, 15.0F));
   return table;
-}
-
-const Table& table()
-{
-  static const Table instance = makeTable();
-  return instance;
 }
 
 }  // namespace
@@ -78,9 +70,8 @@ const Table& table()
 SensorModel sensorModel(std::string_view name)
 {
   std::string known;
-  for (const auto& [entry, elevations] : table()) {
+  for (const auto& [entry, degrees] : sensorTable()) {
     if (entry == name) {
-      const std::vector<float> degrees = elevations();
       return degrees.empty() ? SensorModel{entry, {}, entry != kSolidState} : customSensor(entry, degrees);
     }
     known += (known.empty() ? "" : ", ") + entry;
@@ -91,7 +82,7 @@ SensorModel sensorModel(std::string_view name)
 std::vector<std::string> sensorNames()
 {
   std::vector<std::string> names;
-  for (const auto& entry : table()) {
+  for (const auto& entry : sensorTable()) {
     names.push_back(entry.first);
   }
   return names;

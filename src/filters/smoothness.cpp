@@ -83,16 +83,12 @@ float meanNeighborDistance(const LinePoints& line, int n, int half_window)
 
 float meanDifferenceAcross(const LinePoints& line, int n, int half_window)
 {
-  const auto pointAt = [&](int k) {
-    const auto i = static_cast<std::size_t>(k);
-    return Eigen::Vector3f(line.x[i], line.y[i], line.z[i]);
-  };
-  const Eigen::Vector3f center = pointAt(n);
+  const Eigen::Vector3f center = line.at(n);
   Eigen::Vector3f before = Eigen::Vector3f::Zero();
   Eigen::Vector3f after = Eigen::Vector3f::Zero();
   for (int j = 1; j <= half_window; ++j) {
-    before += pointAt(n - j) - center;
-    after += pointAt(n + j) - center;
+    before += line.at(n - j) - center;
+    after += line.at(n + j) - center;
   }
   const Eigen::Vector3f along = (after - before).normalized();
   const Eigen::Vector3f mean = (before + after) / (2.0F * static_cast<float>(half_window));

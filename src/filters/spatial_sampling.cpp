@@ -1,6 +1,5 @@
 #include "filters/spatial_sampling.h"
 
-#include "common/hash.h"
 #include "common/multi_version.h"
 #include "filters/point_times.h"
 
@@ -35,86 +34,38 @@ void findCubes(std::size_t count, const float* x, const float* y, const float* z
 
 }  // namespace
 
-/// As large as the last sample asked for; smaller tables stay in the cache.
-void SpatialSampling::forget()
-{
-  constexpr std::size_t kFewest = 1024;
-  constexpr unsigned kFewestShift = 64 - 10;
-  std::size_t slots = kFewest;
-  shift_ = kFewestShift;
-  for (; slots < 3 * used_; slots *= 2) {
-    --shift_;
-  }
-  table_.assign(slots, {});
-  used_ = 0;
-  last_ = 0;
-}
-
-void SpatialSampling::grow()
-{
-  smaller_.assign(2 * table_.size(), {});
-  smaller_.swap(table_);
-  --shift_;
-  for (const Block& block : smaller_) {
-    if (block.key != 0) {
-      table_[placeOf(block.key)] = block;
-    }
-  }
-}
-
-/// Where a block is, or where it would come.
-std::size_t SpatialSampling::placeOf(std::uint64_t key) const
-{
-  std::size_t i = hashOf(key, shift_);
-  while (table_[i].key != 0 && table_[i].key != key) {
-    i = (i + 1) & (table_.size() - 1);
-  }
-  return i;
-}
-
-bool SpatialSampling::isFirst(std::uint64_t cube)
+/// Calls \p take(number) for each point that is the first one in its cube; so many points at the most as a batch has.
+template <typename Take>
+void SpatialSampling::takeFirst(std::size_t count, const float* x, const float* y, const float* z, double side,
+                                const Take& take)
 {
   constexpr std::uint64_t kInBlock = kWithinBlock << (2 * kBits) | kWithinBlock << kBits | kWithinBlock;
-  const std::uint64_t key = (cube & ~kInBlock) + 1;  // 0 is none
-  if (table_[last_].key != key) {
-    last_ = placeOf(key);
-    if (table_[last_].key == 0) {
-      table_[last_].key = key;
-      if (2 * ++used_ > table_.size()) {
-        grow();
-        last_ = placeOf(key);
-      }
-    }
-  }
-  const std::uint64_t place = (cube >> (2 * kBits - 4) & kWithinBlock << 4U) |
-                              (cube >> (kBits - 2) & kWithinBlock << 2U) | (cube & kWithinBlock);
-  const std::uint64_t bit = std::uint64_t{1} << place;
-  const bool is_first = (table_[last_].cubes & bit) == 0;
-  table_[last_].cubes |= bit;
-  return is_first;
-}
-
-/// Those of a batch that are the first ones in their cubes.
-void SpatialSampling::addFirst(const ReturnBatch& batch, float inverse_side, std::vector<ScanPoint>& sample)
-{
   std::array<std::uint64_t, ReturnBatch::kMost> cubes;
-  findCubes(batch.count, batch.x.data(), batch.y.data(), batch.z.data(), inverse_side, cubes.data());
-  std::uint64_t last = ~std::uint64_t{0};
-  for (std::size_t n = 0; n < batch.count; ++n) {
-    if (cubes[n] != last && isFirst(cubes[n])) {
-      sample.push_back(batch.point(n));
+  findCubes(count, x, y, z, static_cast<float>(1.0 / side), cubes.data());
+  std::uint64_t last = 0;
+  std::uint64_t* seen = nullptr;  // of the last block
+  for (std::size_t n = 0; n < count; ++n) {
+    const std::uint64_t block = (cubes[n] & ~kInBlock) + 1;  // 0 is none
+    seen = seen != nullptr && block == last ? seen : &seen_[block];
+    last = block;
+    const std::uint64_t place = (cubes[n] >> (2 * kBits - 4) & kWithinBlock << 4U) |
+                                (cubes[n] >> (kBits - 2) & kWithinBlock << 2U) | (cubes[n] & kWithinBlock);
+    const std::uint64_t bit = std::uint64_t{1} << place;
+    if ((*seen & bit) == 0) {
+      *seen |= bit;
+      take(n);
     }
-    last = cubes[n];
   }
 }
 
 void SpatialSampling::sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample)
 {
   sample.clear();
-  forget();
+  seen_.clear();
   ReturnReader reader(returns);
   for (ReturnBatch batch; reader.next(batch);) {
-    addFirst(batch, static_cast<float>(1.0 / side), sample);
+    takeFirst(batch.count, batch.x.data(), batch.y.data(), batch.z.data(), side,
+              [&](std::size_t n) { sample.push_back(batch.point(n)); });
   }
   setTimes(returns.cloud, returns.timing, sample);
 }
@@ -122,9 +73,8 @@ void SpatialSampling::sample(const ScanReturns& returns, double side, std::vecto
 void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample)
 {
   sample.clear();
-  forget();
+  seen_.clear();
   std::array<float, ReturnBatch::kMost> x, y, z;
-  std::array<std::uint64_t, ReturnBatch::kMost> cubes;
   for (std::size_t begin = 0; begin < points.size(); begin += ReturnBatch::kMost) {
     const std::size_t count = std::min(ReturnBatch::kMost, points.size() - begin);
     for (std::size_t n = 0; n < count; ++n) {
@@ -132,30 +82,8 @@ void SpatialSampling::sample(const std::vector<ScanPoint>& points, double side, 
       y[n] = points[begin + n].y;
       z[n] = points[begin + n].z;
     }
-    findCubes(count, x.data(), y.data(), z.data(), static_cast<float>(1.0 / side), cubes.data());
-    for (std::size_t n = 0; n < count; ++n) {
-      if (isFirst(cubes[n])) {
-        sample.push_back(points[begin + n]);
-      }
-    }
+    takeFirst(count, x.data(), y.data(), z.data(), side, [&](std::size_t n) { sample.push_back(points[begin + n]); });
   }
-}
-
-/// Whether places fill more than so many cubes.
-bool SpatialSampling::fillMore(const Places& places, double side, std::size_t cells)
-{
-  forget();
-  std::array<std::uint64_t, ReturnBatch::kMost> cubes;
-  std::size_t filled = 0;
-  for (std::size_t begin = 0; begin < places.x.size() && filled <= cells; begin += cubes.size()) {
-    const std::size_t count = std::min(cubes.size(), places.x.size() - begin);
-    findCubes(count, &places.x[begin], &places.y[begin], &places.z[begin], static_cast<float>(1.0 / side),
-              cubes.data());
-    for (std::size_t n = 0; n < count; ++n) {
-      filled += isFirst(cubes[n]) ? 1 : 0;
-    }
-  }
-  return filled > cells;
 }
 
 double SpatialSampling::sideFor(const ScanReturns& returns, double per_root)
@@ -163,23 +91,19 @@ double SpatialSampling::sideFor(const ScanReturns& returns, double per_root)
   constexpr double kSmallest = 1e-3;  // m: finer than any lidar measures
   constexpr double kGreatest = 1e3;   // m: farther than any lidar sees
   constexpr int kHalvings = 16;       // to a part in 5,000
-  Places places;
-  ReturnReader reader(returns);
-  for (ReturnBatch batch; reader.next(batch);) {
-    const auto count = static_cast<std::ptrdiff_t>(batch.count);
-    places.x.insert(places.x.end(), batch.x.begin(), batch.x.begin() + count);
-    places.y.insert(places.y.end(), batch.y.begin(), batch.y.begin() + count);
-    places.z.insert(places.z.end(), batch.z.begin(), batch.z.begin() + count);
-  }
-  if (places.x.empty()) {
+  std::vector<ScanPoint> points;
+  collectPoints(returns, points);
+  if (points.empty()) {
     return 0.0;
   }
-  const auto cells = static_cast<std::size_t>(per_root * std::sqrt(static_cast<double>(places.x.size())));
+  const auto cells = static_cast<std::size_t>(per_root * std::sqrt(static_cast<double>(points.size())));
   double small = std::log(kSmallest);
   double great = std::log(kGreatest);
+  std::vector<ScanPoint> firsts;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (small + great);
-    (fillMore(places, std::exp(middle), cells) ? small : great) = middle;
+    sample(points, std::exp(middle), firsts);
+    (firsts.size() > cells ? small : great) = middle;
   }
   return std::exp(great);
 }

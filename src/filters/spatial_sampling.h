@@ -2,6 +2,7 @@
 /// A choice of a scan's returns that is even in space.
 #pragma once
 
+#include "common/hash.h"
 #include "filters/scan_returns.h"
 
 #include <cstddef>
@@ -24,28 +25,10 @@ public:
   [[nodiscard]] double sideFor(const ScanReturns& returns, double per_root);
 
 private:
-  /// Some cubes, by what their keys have in common, and a bit for each that was seen.
-  struct Block {
-    std::uint64_t key = 0;
-    std::uint64_t cubes = 0;
-  };
+  template <typename Take>
+  void takeFirst(std::size_t count, const float* x, const float* y, const float* z, double side, const Take& take);
 
-  struct Places {
-    std::vector<float> x, y, z;
-  };
-
-  [[nodiscard]] bool fillMore(const Places& places, double side, std::size_t cells);
-  void addFirst(const struct ReturnBatch& batch, float inverse_side, std::vector<ScanPoint>& sample);
-  [[nodiscard]] bool isFirst(std::uint64_t cube);
-  void forget();
-  void grow();
-  [[nodiscard]] std::size_t placeOf(std::uint64_t key) const;
-
-  std::vector<Block> table_;
-  std::vector<Block> smaller_;  // the table before it grew
-  unsigned shift_ = 0;          // leaves as many bits of a hash as number the table's slots
-  std::size_t used_ = 0;
-  std::size_t last_ = 0;  // block
+  HashTable<std::uint64_t> seen_;  // cubes, by what those of a block have in common: a bit for each
 };
 
 }  // namespace pcl_floam

@@ -34,7 +34,7 @@ constexpr RunLimits kAcross = {0.1F, 0.2F};
 class StraightRun {
 public:
   StraightRun(const Neighborhood& neighbors, const RunLimits& limits)
-      : x_(neighbors.x), y_(neighbors.y), z_(neighbors.z), limits_(limits), low_(neighbors.first), high_(neighbors.last)
+      : neighbors_(neighbors), limits_(limits), low_(neighbors.first), high_(neighbors.last)
   {
     lookAtSteps();
     for (std::ptrdiff_t i = kAside; i > low_; --i) {
@@ -66,26 +66,23 @@ private:
   static constexpr std::size_t kSteps = Neighborhood::kPlaces - 1;
   using Column = std::array<float, kSteps>;
 
-  [[nodiscard]] Eigen::Vector3f at(std::ptrdiff_t i) const
-  {
-    const auto n = static_cast<std::size_t>(i);
-    return {x_[n], y_[n], z_[n]};
-  }
+  [[nodiscard]] Eigen::Vector3f at(std::ptrdiff_t i) const { return neighbors_.at(i); }
   [[nodiscard]] float step(std::ptrdiff_t i) const { return squared_step_[static_cast<std::size_t>(i)]; }
 
   /// Side by side.
   void lookAtSteps()
   {
+    const auto& [x, y, z, first, last] = neighbors_;
     for (std::size_t i = 0; i < kSteps; ++i) {
-      const float dx = x_[i + 1] - x_[i];
-      const float dy = y_[i + 1] - y_[i];
-      const float dz = z_[i + 1] - z_[i];
+      const float dx = x[i + 1] - x[i];
+      const float dy = y[i + 1] - y[i];
+      const float dz = z[i + 1] - z[i];
       squared_step_[i] = dx * dx + dy * dy + dz * dz;
-      const float cross_x = y_[i] * z_[i + 1] - z_[i] * y_[i + 1];
-      const float cross_y = z_[i] * x_[i + 1] - x_[i] * z_[i + 1];
-      const float cross_z = x_[i] * y_[i + 1] - y_[i] * x_[i + 1];
+      const float cross_x = y[i] * z[i + 1] - z[i] * y[i + 1];
+      const float cross_y = z[i] * x[i + 1] - x[i] * z[i + 1];
+      const float cross_z = x[i] * y[i + 1] - y[i] * x[i + 1];
       squared_cross_[i] = cross_x * cross_x + cross_y * cross_y + cross_z * cross_z;
-      dot_[i] = x_[i] * x_[i + 1] + y_[i] * y_[i + 1] + z_[i] * z_[i + 1];
+      dot_[i] = x[i] * x[i + 1] + y[i] * y[i + 1] + z[i] * z[i + 1];
     }
   }
 
@@ -142,7 +139,7 @@ private:
     return true;
   }
 
-  const std::array<float, Neighborhood::kPlaces>&x_, &y_, &z_;
+  const Neighborhood& neighbors_;
   const RunLimits& limits_;
   Column squared_step_{};  // from each place to the next
   Column squared_cross_{};

@@ -4,10 +4,6 @@
 
 #include <pcl_floam/filters/core/pose_instant.h>
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
-
 namespace pcl_floam {
 
 const char* toString(PoseInstant instant)
@@ -33,21 +29,11 @@ void compensate(const std::vector<Feature>& features, const SweepMotion& motion,
     return;
   }
   const SweepTrajectory trajectory(SE3(), motion.twist(), motion.reference(), motion.acceleration());
-  const std::size_t count = compensated.size();
-  constexpr std::size_t kTogether = 256;
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>((count + kTogether - 1) / kTogether); ++part) {
-    const std::size_t begin = static_cast<std::size_t>(part) * kTogether;
-    const std::size_t some = std::min(kTogether, count - begin);
-    std::array<Eigen::Vector3d, kTogether> places;
-    trajectory.undistorted(&compensated[begin], 1, some, places.data());
-    for (std::size_t i = 0; i < some; ++i) {
-      Feature& feature = compensated[begin + i];
-      feature.x = static_cast<float>(places[i].x());
-      feature.y = static_cast<float>(places[i].y());
-      feature.z = static_cast<float>(places[i].z());
-    }
-  }
+  trajectory.undistorted(compensated, threads, [&](std::size_t i, const Eigen::Vector3d& place) {
+    compensated[i].x = static_cast<float>(place.x());
+    compensated[i].y = static_cast<float>(place.y());
+    compensated[i].z = static_cast<float>(place.z());
+  });
 }
 
 void compensate(const FeatureSet& features, const SweepMotion& motion, FeatureSet& compensated, int threads)

@@ -50,10 +50,8 @@ void correctVerticalAngle(double degrees, FeatureSet& features)
 {
   const Turn turn(degrees);
   for (std::vector<Feature>* kind : {&features.edges, &features.planes}) {
-    for (Feature& f : *kind) {
-      if (degrees != 0.0) {
-        turnUp(turn.sine, turn.cosine, f.x, f.y, f.z);
-      }
+    for (std::size_t i = 0; i < kind->size() && degrees != 0.0; ++i) {
+      turnUp(turn.sine, turn.cosine, (*kind)[i].x, (*kind)[i].y, (*kind)[i].z);
     }
   }
 }
@@ -65,10 +63,8 @@ void correctVerticalAngle(double degrees, std::size_t count, float* x, float* y,
     return;
   }
   const Turn turn(degrees);
-  const auto chunks = static_cast<std::ptrdiff_t>((count + kChunk - 1) / kChunk);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t chunk = 0; chunk < chunks; ++chunk) {
-    const std::size_t first = static_cast<std::size_t>(chunk) * kChunk;
+  for (std::size_t first = 0; first < count; first += kChunk) {
     turnUp(turn.sine, turn.cosine, std::min(kChunk, count - first), x + first, y + first, z + first);
   }
 }

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace pcl_floam {
@@ -12,77 +11,42 @@ namespace pcl_floam {
 template <typename T>
 class ChunkedPool {
 public:
-  ChunkedPool() = default;
-  ChunkedPool(const ChunkedPool& other) : free_(other.free_), last_(other.last_), ever_(other.ever_), used_(other.used_)
-  {
-    for (const auto& chunk : other.chunks_) {
-      chunks_.push_back(std::make_unique<Chunk>(*chunk));
-    }
-  }
-  ChunkedPool(ChunkedPool&&) noexcept = default;
-  ChunkedPool& operator=(ChunkedPool other) noexcept
-  {
-    chunks_.swap(other.chunks_);
-    free_.swap(other.free_);
-    std::swap(last_, other.last_);
-    std::swap(ever_, other.ever_);
-    std::swap(used_, other.used_);
-    return *this;
-  }
-  ~ChunkedPool() = default;
-
-  T& operator[](std::uint32_t i) { return chunks_[i / kChunk]->at[i % kChunk]; }
-  const T& operator[](std::uint32_t i) const { return chunks_[i / kChunk]->at[i % kChunk]; }
-
-  [[nodiscard]] std::size_t used() const { return used_; }
+  T& operator[](std::uint32_t i) { return chunks_[i / kChunk][i % kChunk]; }
+  const T& operator[](std::uint32_t i) const { return chunks_[i / kChunk][i % kChunk]; }
 
   /// The number of a fresh object.
   std::uint32_t take()
   {
-    ++used_;
-    std::uint32_t i = 0;
-    if (!free_.empty()) {
+    std::uint32_t i = last_ + 1;
+    if (free_.empty()) {
+      last_ = i;
+    } else {
       i = free_.back();
       free_.pop_back();
-    } else {
-      i = ++last_;
     }
-    if (i <= ever_) {
+    if (i / kChunk < chunks_.size()) {
       (*this)[i] = T();
-      return i;
-    }
-    ever_ = i;
-    if (i / kChunk >= chunks_.size()) {
-      chunks_.push_back(std::unique_ptr<Chunk>(new Chunk));  // not filled with zeros before its objects are made
+    } else {
+      chunks_.emplace_back(kChunk);
     }
     return i;
   }
 
-  void release(std::uint32_t i)
-  {
-    --used_;
-    free_.push_back(i);
-  }
+  void release(std::uint32_t i) { free_.push_back(i); }
 
   /// Keeps the room.
   void clear()
   {
     free_.clear();
     last_ = 0;
-    used_ = 0;
   }
 
 private:
   static constexpr std::uint32_t kChunk = 256;
-  struct Chunk {
-    T at[kChunk];
-  };
 
-  std::vector<std::unique_ptr<Chunk>> chunks_;
+  std::vector<std::vector<T>> chunks_;
   std::vector<std::uint32_t> free_;
   std::uint32_t last_ = 0;
-  std::uint32_t ever_ = 0;  // the last one before the room was cleared, if that is more
-  std::size_t used_ = 0;
 };
 
 }  // namespace pcl_floam

@@ -48,11 +48,6 @@ EdgeLines::EdgeLines(const EdgeLines& other) : SurfaceSearch(other), layer_(std:
 {
 }
 
-void EdgeLines::insert(const Eigen::Vector3d* places, std::size_t count)
-{
-  layer_->insertEach(places, count);
-}
-
 void EdgeLines::find(const Eigen::Vector3d* places, std::size_t count, Surface* surfaces) const
 {
   constexpr std::size_t kTogether = 16;

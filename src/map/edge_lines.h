@@ -27,7 +27,7 @@ public:
   void clear() { layer_->clear(); }
 
   /// Edges of one laser make a line, too: they are chosen places and not its curve.
-  void insert(const Eigen::Vector3d* places, std::size_t count);
+  void insert(const Eigen::Vector3d* places, std::size_t count) { layer_->insertEach(places, count); }
 
   /// Forgets what is farther than \p radius (m) from \p center.
   void crop(const Eigen::Vector3d& center, double radius) { layer_->crop(center, radius); }

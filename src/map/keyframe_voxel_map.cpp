@@ -41,10 +41,8 @@ struct KeyframeVoxelMap::Impl {
   {
     points.resize(features.size());
     intensities.resize(features.size());
-    const auto count = static_cast<std::ptrdiff_t>(features.size());
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (std::ptrdiff_t n = 0; n < count; ++n) {
-      const auto i = static_cast<std::size_t>(n);
+    for (std::size_t i = 0; i < features.size(); ++i) {
       points[i] = world_T_sensor * Eigen::Vector3d(features[i].x, features[i].y, features[i].z);
       intensities[i] = features[i].intensity;
     }
@@ -52,13 +50,11 @@ struct KeyframeVoxelMap::Impl {
   }
 
   /// Cropping touches every block, so it is done once the sensor has gone a tenth of the horizon.
-  void cropWhenDue(const Eigen::Vector3d& center)
+  void crop(const Eigen::Vector3d& center)
   {
-    if ((center - last_crop).norm() > 0.1 * parameters.horizon) {
-      edges.crop(center, parameters.horizon);
-      planes.crop(center, parameters.horizon);
-      last_crop = center;
-    }
+    edges.crop(center, parameters.horizon);
+    planes.crop(center, parameters.horizon);
+    last_crop = center;
   }
 
   MapParameters parameters;
@@ -96,7 +92,9 @@ void KeyframeVoxelMap::insert(const FeatureSet& features, const SE3& world_T_sen
 {
   impl_->insert(impl_->edges, features.edges, world_T_sensor, threads);
   impl_->insert(impl_->planes, features.planes, world_T_sensor, threads);
-  impl_->cropWhenDue(world_T_sensor.translation);
+  if ((world_T_sensor.translation - impl_->last_crop).norm() > 0.1 * impl_->parameters.horizon) {
+    impl_->crop(world_T_sensor.translation);
+  }
   impl_->rebuildTrees();
 }
 
@@ -132,9 +130,7 @@ void KeyframeVoxelMap::forgetSeenThrough(const std::vector<Eigen::Vector3f>& poi
 
 void KeyframeVoxelMap::crop(const Eigen::Vector3d& center)
 {
-  impl_->edges.crop(center, impl_->parameters.horizon);
-  impl_->planes.crop(center, impl_->parameters.horizon);
-  impl_->last_crop = center;
+  impl_->crop(center);
   impl_->rebuildTrees();
 }
 

@@ -2,12 +2,13 @@
 /// The nearest points of a search in progress.
 #pragma once
 
+#include "common/sort_key.h"
+
 #include <pcl_floam/map/core/neighbor_search.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 
 namespace pcl_floam {
 
@@ -23,17 +24,11 @@ class NearestSoFar {
 public:
   NearestSoFar(int k, float squared_radius) : k_(static_cast<std::size_t>(k))
   {
-    std::fill_n(keys_.begin(), k_, keyOf(squared_radius, kNobody));
+    std::fill_n(keys_.begin(), k_, sortKey(squared_radius, kNobody));
   }
 
   /// Squared distance up to which a point counts, m^2.
-  [[nodiscard]] float limit() const
-  {
-    const auto bits = static_cast<std::uint32_t>(keys_[k_ - 1] >> 32);
-    float limit = 0.0F;
-    std::memcpy(&limit, &bits, sizeof(limit));
-    return limit;
-  }
+  [[nodiscard]] float limit() const { return valueOf(keys_[k_ - 1]); }
 
   /// The points added from now on are \p seen.
   void enter(const SeenPoints& seen)
@@ -47,7 +42,7 @@ public:
   /// \param point its number in the block entered last
   void add(float squared_distance, std::size_t point)
   {
-    std::uint64_t key = keyOf(squared_distance, static_cast<std::uint32_t>((entered_ - 1) << kPointBits | point));
+    std::uint64_t key = sortKey(squared_distance, static_cast<std::uint32_t>((entered_ - 1) << kPointBits | point));
     for (std::size_t i = 0; i < k_; ++i) {
       // An exchange, or none, without a branch: which of them it is cannot be foreseen.
       const std::uint64_t difference =
@@ -77,13 +72,6 @@ private:
   static constexpr std::size_t kMostEntered = 64;
 
   /// The bits of floats that are not negative sort as the floats do.
-  static std::uint64_t keyOf(float squared_distance, std::uint32_t number)
-  {
-    std::uint32_t bits = 0;
-    std::memcpy(&bits, &squared_distance, sizeof(bits));
-    return static_cast<std::uint64_t>(bits) << 32 | number;
-  }
-
   static std::uint32_t numberOf(std::uint64_t key) { return static_cast<std::uint32_t>(key); }
 
   /// Of many blocks, keeps those of the nearest points.

@@ -118,10 +118,8 @@ bool RangeImage::seesThrough(const Eigen::Vector3f& place) const
   }
   const float range = place.norm();
   const float far = clearlyBeyond(range);
-  if (rangeAt(cell.column, cell.row) < far) {  // or there is none
-    return false;
-  }
-  if (!allBeyond(cell.column, cell.row, far) || !nextBeyond(cell, 1, far) || !nextBeyond(cell, -1, far)) {
+  if (rangeAt(cell.column, cell.row) < far ||  // or there is none
+      !allBeyond(cell.column, cell.row, far) || !nextBeyond(cell, 1, far) || !nextBeyond(cell, -1, far)) {
     return false;
   }
   constexpr float kThrough = 0.05F;           // m from the beam

@@ -2,14 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <algorithm>
-
 namespace pcl_floam {
 
 namespace {
 
 /// Fewer points have a shape by chance.
-constexpr std::uint32_t kLeastCount = 6;
+constexpr int kLeastCount = 6;
 /// A plane's thinnest variance is less than this part of the next, which is at least this part of the widest.
 constexpr double kFlat = 0.05;
 /// m^2: what is no thicker than twice the noise may be a plane, or a line, whose cell is too small to show it.
@@ -18,16 +16,10 @@ constexpr double kByNoise = 4.0 * kRangeNoise * kRangeNoise;
 constexpr int kLasersOfPlane = 2;
 constexpr int kLasersOfLine = 3;
 
-Eigen::Vector3d meanOf(const CellSums& s)
+Eigen::Matrix3d covarianceOf(const PointMoments& points)
 {
-  return Eigen::Vector3d(s.sum[0], s.sum[1], s.sum[2]) / s.count;
-}
-
-Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
-{
-  Eigen::Matrix3d outer;
-  outer << s.outer[0], s.outer[1], s.outer[2], s.outer[1], s.outer[3], s.outer[4], s.outer[2], s.outer[4], s.outer[5];
-  return outer / s.count - mean * mean.transpose();
+  const Eigen::Vector3d mean = points.mean();
+  return points.squares() / static_cast<double>(points.count()) - mean * mean.transpose();
 }
 
 /// What fills a cell evenly goes on beyond it, and tells nothing of the way along it: its variance is the squared side
@@ -36,7 +28,7 @@ Eigen::Matrix3d covarianceOf(const CellSums& s, const Eigen::Vector3d& mean)
 Eigen::Matrix3d observabilityAmong(const Eigen::Matrix3d& axes, const Eigen::Vector3d& own, const CellSums& around,
                                    double side)
 {
-  const Eigen::Matrix3d wider = 0.25 * (axes.transpose() * covarianceOf(around, meanOf(around)) * axes);
+  const Eigen::Matrix3d wider = 0.25 * (axes.transpose() * covarianceOf(around.points) * axes);
   const Eigen::Vector3d variance = own.cwiseMax(wider.diagonal());
   constexpr double kEven = 12.0;
   constexpr double kChance = 1.25;  // as few points vary by chance
@@ -52,34 +44,24 @@ std::array<float, 3> single(const Eigen::Vector3d& v)
 
 }  // namespace
 
-void CellSums::add(double x, double y, double z, std::uint32_t laser)
+void CellSums::add(const Eigen::Vector3d& point, std::uint32_t laser)
 {
-  sum[0] += x;
-  sum[1] += y;
-  sum[2] += z;
-  outer[0] += x * x;
-  outer[1] += x * y;
-  outer[2] += x * z;
-  outer[3] += y * y;
-  outer[4] += y * z;
-  outer[5] += z * z;
+  points.add(point);
   lasers |= std::uint64_t{1} << (laser % 64U);  // those of sensors with more than 64 share bits
-  ++count;
 }
 
 CellFit fitOf(const CellSums& sums, double side, const CellSums* around)
 {
   CellFit fit;
   const int lasers = __builtin_popcountll(sums.lasers);
-  if (sums.count < kLeastCount || lasers < kLasersOfPlane) {
+  if (sums.points.count() < kLeastCount || lasers < kLasersOfPlane) {
     return fit;
   }
-  const Eigen::Vector3d mean = meanOf(sums);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
-  eigen.computeDirect(covarianceOf(sums, mean));
+  eigen.computeDirect(covarianceOf(sums.points));
   const Eigen::Vector3d variance = eigen.eigenvalues().cwiseMax(0.0);  // rising
   CellShape& shape = fit.shape;
-  shape.mean = single(mean);
+  shape.mean = single(sums.points.mean());
   if (variance[1] < kFlat * variance[2]) {
     fit.kind = lasers < kLasersOfLine ? SurfaceKind::unknown : SurfaceKind::line;
     shape.direction = single(eigen.eigenvectors().col(2));

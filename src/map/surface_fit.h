@@ -2,6 +2,8 @@
 /// The shape of a cell's points from their running sums.
 #pragma once
 
+#include "common/point_moments.h"
+
 #include <pcl_floam/map/core/surface.h>
 
 #include <Eigen/Core>
@@ -16,12 +18,10 @@ inline constexpr double kRangeNoise = 0.02;
 
 /// Count, sum and sum of outer products of points about a common origin, and the lasers that saw them.
 struct CellSums {
-  std::array<double, 3> sum{};
-  std::array<double, 6> outer{};  // xx xy xz yy yz zz
-  std::uint64_t lasers = 0;       // bits
-  std::uint32_t count = 0;
+  PointMoments points;
+  std::uint64_t lasers = 0;  // bits
 
-  void add(double x, double y, double z, std::uint32_t laser);
+  void add(const Eigen::Vector3d& point, std::uint32_t laser);
 };
 
 /// A plane or a line: what the sums tell of it. The mean is from the sums' origin.

@@ -4,6 +4,7 @@
 
 #include "common/prefetch.h"
 #include "map/nearest_so_far.h"
+#include "map/point_group.h"
 #include "map/voxel_table.h"
 
 #include <Eigen/Core>
@@ -18,8 +19,8 @@
 
 namespace pcl_floam {
 
-/// One mean point per occupied voxel, relative to the block's lowest corner, in groups of four: the distances of a
-/// group are computed at once. Containers of blocks hand their memory on to them.
+/// One mean point per occupied voxel, relative to the block's lowest corner. Containers of blocks hand their memory on
+/// to them.
 class VoxelBlock {
 public:
   using allocator_type = std::pmr::polymorphic_allocator<std::byte>;
@@ -43,11 +44,6 @@ public:
         voxels_(std::move(other.voxels_), memory)
   {
   }
-  VoxelBlock(const VoxelBlock& other) = default;
-  VoxelBlock(VoxelBlock&& other) noexcept = default;
-  VoxelBlock& operator=(const VoxelBlock& other) = default;
-  VoxelBlock& operator=(VoxelBlock&& other) = default;
-  ~VoxelBlock() = default;
 
   VoxelKey key;
   std::array<std::int32_t, kAround> around;
@@ -62,15 +58,14 @@ public:
   }
 
   [[nodiscard]] std::size_t size() const { return voxels_.size(); }
-  [[nodiscard]] Eigen::Vector3f point(std::size_t i) const
-  {
-    const Group& group = groups_[i / kLanes];
-    return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
-  }
+  [[nodiscard]] Eigen::Vector3f point(std::size_t i) const { return groups_[i / kLanes].point(i % kLanes); }
 
   [[nodiscard]] float intensity(std::size_t i) const { return voxels_[i].intensity; }
 
-  void prefetchPoints() const { prefetch(groups_.data(), std::min<std::size_t>(groups_.size(), 8) * sizeof(Group)); }
+  void prefetchPoints() const
+  {
+    prefetch(groups_.data(), std::min<std::size_t>(groups_.size(), 8) * sizeof(PointGroup));
+  }
 
   /// A mean takes in no more points than this: later ones keep moving it, so that it can follow the world.
   static constexpr float kMaxAveraged = 20.0F;
@@ -123,16 +118,8 @@ public:
     nearest.enter({corner, this});
     float limit = nearest.limit();
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      const Group& group = groups_[g];
-      std::array<float, kLanes> squared;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const float x = corner.x() + group.x[lane];
-        const float y = corner.y() + group.y[lane];
-        const float z = corner.z() + group.z[lane];
-        squared[lane] = x * x + y * y + z * z;
-      }
-      const float least = std::min(std::min(squared[0], squared[1]), std::min(squared[2], squared[3]));
-      if (least > limit) {
+      const PointGroup::Lanes squared = groups_[g].squaredDistances(-corner);
+      if (PointGroup::leastOf(squared) > limit) {
         continue;
       }
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -145,20 +132,7 @@ public:
   }
 
 private:
-  static constexpr std::size_t kLanes = 4;
-
-  /// Four points; those that are not there are infinitely far.
-  struct Group {
-    Group()
-    {
-      x.fill(std::numeric_limits<float>::infinity());
-      y.fill(0.0F);
-      z.fill(0.0F);
-    }
-    std::array<float, kLanes> x;
-    std::array<float, kLanes> y;
-    std::array<float, kLanes> z;
-  };
+  static constexpr std::size_t kLanes = PointGroup::kLanes;
 
   struct Voxel {
     std::uint32_t number;  ///< within the block
@@ -166,13 +140,7 @@ private:
     float intensity;
   };
 
-  void set(std::size_t i, const Eigen::Vector3f& offset)
-  {
-    Group& group = groups_[i / kLanes];
-    group.x[i % kLanes] = offset.x();
-    group.y[i % kLanes] = offset.y();
-    group.z[i % kLanes] = offset.z();
-  }
+  void set(std::size_t i, const Eigen::Vector3f& offset) { groups_[i / kLanes].set(i % kLanes, offset); }
 
   void average(std::size_t i, const Eigen::Vector3f& offset, float intensity)
   {
@@ -182,7 +150,7 @@ private:
     set(i, point(i) + (offset - point(i)) / voxel.count);
   }
 
-  std::pmr::vector<Group> groups_;
+  std::pmr::vector<PointGroup> groups_;
   std::pmr::vector<Voxel> voxels_;
 };
 

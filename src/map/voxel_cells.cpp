@@ -52,7 +52,7 @@ std::uint32_t VoxelCells::make(const VoxelKey& finest, int level)
   if (level == 0) {
     contents_[cell].child[0] = leaves_.take();
   }
-  table_.insert(key.packed(level), cell);
+  table_[key.packed(level)] = cell;
   return cell;
 }
 
@@ -61,10 +61,10 @@ void VoxelCells::add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint
   leaves_[contents_[cell].child[0]].add(point);
   const Eigen::Vector3d p = point.cast<double>();
   for (; cell != 0; cell = cells_[cell].parent) {
-    constexpr std::uint32_t kMost = std::numeric_limits<std::uint16_t>::max();
+    constexpr int kMost = std::numeric_limits<std::uint16_t>::max();
     CellSums& sums = contents_[cell].sums;
-    sums.add(p.x(), p.y(), p.z(), laser);
-    cells_[cell].count = static_cast<std::uint16_t>(std::min(sums.count, kMost));
+    sums.add(p, laser);
+    cells_[cell].count = static_cast<std::uint16_t>(std::min(sums.points.count(), kMost));
     cells_[cell].state.store(kStale, std::memory_order_relaxed);
   }
 }

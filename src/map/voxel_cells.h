@@ -3,13 +3,13 @@
 #pragma once
 
 #include "map/chunked_pool.h"
+#include "map/point_group.h"
 #include "map/surface_fit.h"
 #include "map/voxel_table.h"
 
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -54,36 +54,18 @@ public:
   };
   /// The points of a finest cell, from the centre of its block, m. Those that are not there are infinitely far.
   struct alignas(64) Leaf {
-    static constexpr std::size_t kLanes = 4;  ///< points of a group lie side by side
-    struct Group {
-      std::array<float, kLanes> x, y, z;
-    };
+    static constexpr std::size_t kLanes = PointGroup::kLanes;
 
-    Leaf()
-    {
-      for (Group& group : groups) {
-        group.x.fill(std::numeric_limits<float>::infinity());
-        group.y.fill(0.0F);
-        group.z.fill(0.0F);
-      }
-    }
     [[nodiscard]] std::size_t used() const { return (count + kLanes - 1) / kLanes; }
-    [[nodiscard]] Eigen::Vector3f point(std::size_t i) const
-    {
-      const Group& group = groups[i / kLanes];
-      return {group.x[i % kLanes], group.y[i % kLanes], group.z[i % kLanes]};
-    }
+    [[nodiscard]] Eigen::Vector3f point(std::size_t i) const { return groups[i / kLanes].point(i % kLanes); }
     void add(const Eigen::Vector3f& point)
     {
-      Group& group = groups[count / kLanes];
-      group.x[count % kLanes] = point.x();
-      group.y[count % kLanes] = point.y();
-      group.z[count % kLanes] = point.z();
+      groups[count / kLanes].set(count % kLanes, point);
       ++count;
     }
 
     std::uint32_t count = 0;
-    std::array<Group, kPointsPerLeaf / kLanes> groups;
+    std::array<PointGroup, kPointsPerLeaf / kLanes> groups;
     static_assert(kPointsPerLeaf % kLanes == 0, "groups are full");
   };
   /// A cell around a place.
@@ -103,7 +85,7 @@ public:
   /// The finest one that there is around a finest voxel.
   [[nodiscard]] Found finestAt(const VoxelKey& finest) const;
   /// The finest cell of a key, which must not be there yet, with all above it that are not.
-  std::uint32_t make(const VoxelKey& finest) { return make(finest, 0); }
+  std::uint32_t make(const VoxelKey& finest, int level = 0);
   /// Takes a point into a finest cell that is not full, and into all above it.
   void add(std::uint32_t cell, const Eigen::Vector3f& point, std::uint32_t laser);
 
@@ -115,7 +97,7 @@ public:
     std::size_t points = 0;
     for (const Block& block : blocks_) {
       if (is_far(block.key)) {
-        points += contents_[block.root].sums.count;
+        points += static_cast<std::size_t>(contents_[block.root].sums.points.count());
         release(block.root, block.key, kLevels - 1);
       } else {
         blocks_[kept++] = block;
@@ -134,7 +116,6 @@ private:
     std::uint32_t root = 0;
   };
 
-  std::uint32_t make(const VoxelKey& finest, int level);
   void release(std::uint32_t cell, const VoxelKey& key, int level);
 
   ChunkedPool<Cell> cells_;

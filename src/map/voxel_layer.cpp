@@ -3,7 +3,6 @@
 #include "common/prefetch.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace pcl_floam {
@@ -48,8 +47,7 @@ bool VoxelLayer::findPlace(const Eigen::Vector3d& point, BlockQuery& place) cons
     return false;
   }
   // In double: the subtraction takes away the kilometres, what is left fits a float.
-  const VoxelKey& key = place.key;
-  place.offset = (point - block_size_ * Eigen::Vector3d(key.x, key.y, key.z)).cast<float>();
+  place.offset = (point - cornerOf(place.key)).cast<float>();
   return true;
 }
 
@@ -99,7 +97,7 @@ std::int32_t VoxelLayer::findOrAddBlock(const VoxelKey& key)
     free_.pop_back();
     blocks_[static_cast<std::size_t>(added)].key = key;
   }
-  numbers_.insert(key.packed(0), static_cast<std::uint32_t>(added) + 1);
+  numbers_[key.packed(0)] = static_cast<std::uint32_t>(added) + 1;
   link(added);
   return added;
 }
@@ -115,22 +113,12 @@ void VoxelLayer::insertMean(const Eigen::Vector3d& point, float intensity)
 
 void VoxelLayer::insertEach(const Eigen::Vector3d* points, std::size_t count, int threads, const float* intensities)
 {
-  if (threads > 1) {
-    insertShared(points, intensities, count, threads);
-  } else {
-    insertInTurn(points, intensities, count);
-  }
-}
-
-void VoxelLayer::insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads)
-{
   constexpr std::int32_t kNowhere = kNone - 1;
   constexpr std::size_t kAhead = 8;
   places_.resize(count);
   homes_.resize(count);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(count); ++n) {
-    const auto i = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < count; ++i) {
     homes_[i] = findPlace(points[i], places_[i]) ? findBlock(places_[i].key) : kNowhere;
     places_[i].intensity = intensities != nullptr ? intensities[i] : 0.0F;
   }
@@ -155,36 +143,6 @@ void VoxelLayer::insertShared(const Eigen::Vector3d* points, const float* intens
   size_ += added;
 }
 
-void VoxelLayer::insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count)
-{
-  constexpr std::size_t kTogether = 16;
-  std::array<BlockQuery, kTogether> places;
-  std::array<std::int32_t, kTogether> blocks;
-  for (std::size_t first = 0; first < count; first += kTogether) {
-    std::size_t together = 0;
-    for (std::size_t i = first; i < std::min(first + kTogether, count); ++i) {
-      if (findPlace(points[i], places[together])) {
-        places[together].intensity = intensities != nullptr ? intensities[i] : 0.0F;
-        numbers_.expect(places[together].key.packed(0));
-        ++together;
-      }
-    }
-    for (std::size_t i = 0; i < together; ++i) {
-      blocks[i] = findBlock(places[i].key);
-      if (blocks[i] != kNone) {
-        prefetch(&blocks_[static_cast<std::size_t>(blocks[i])], sizeof(VoxelBlock));
-      }
-    }
-    for (std::size_t i = 0; i < together; ++i) {
-      // One that was not there may have been added for a point just before.
-      const std::int32_t block = blocks[i] != kNone ? blocks[i] : findOrAddBlock(places[i].key);
-      const BlockQuery& place = places[i];
-      size_ += blocks_[static_cast<std::size_t>(block)].add(voxelAt(place.offset), place.offset, place.intensity);
-    }
-  }
-}
-
-/// Those that stay are not touched: what goes is little, sweep by sweep.
 void VoxelLayer::crop(const Eigen::Vector3d& center, double radius)
 {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
@@ -218,16 +176,14 @@ std::size_t VoxelLayer::weakenSeenThrough(const RangeImage& scan, const SE3& wor
   const SE3 sensor_T_world = world_T_sensor.inverse();
   const Eigen::Matrix3f rotation = sensor_T_world.rotation.cast<float>();
   const Eigen::Vector3f half = Eigen::Vector3f::Constant(static_cast<float>(0.5 * block_size_));
+  const std::size_t count = blocks_.size();
   std::size_t forgotten = 0;
 #pragma omp parallel for num_threads(std::max(threads, 1)) schedule(dynamic, 64) reduction(+ : forgotten)
-  for (std::ptrdiff_t b = 0; b < static_cast<std::ptrdiff_t>(blocks_.size()); ++b) {
-    VoxelBlock& block = blocks_[static_cast<std::size_t>(b)];
-    if (!block.isUsed()) {
-      continue;
-    }
-    const Eigen::Vector3d corner = block_size_ * Eigen::Vector3d(block.key.x, block.key.y, block.key.z);
+  for (std::size_t b = 0; b < count; ++b) {
+    VoxelBlock& block = blocks_[b];
+    const Eigen::Vector3d corner = cornerOf(block.key);
     const Eigen::Vector3d middle = corner.array() + 0.5 * block_size_;
-    if ((middle - world_T_sensor.translation).squaredNorm() > radius * radius) {
+    if (!block.isUsed() || (middle - world_T_sensor.translation).squaredNorm() > radius * radius) {
       continue;
     }
     const Eigen::Vector3f corner_in_sensor = (sensor_T_world * corner).cast<float>();
@@ -269,7 +225,7 @@ std::vector<Eigen::Vector3d> VoxelLayer::points() const
   std::vector<Eigen::Vector3d> points;
   points.reserve(size_);
   for (const VoxelBlock& block : blocks_) {
-    const Eigen::Vector3d corner = block_size_ * Eigen::Vector3d(block.key.x, block.key.y, block.key.z);
+    const Eigen::Vector3d corner = cornerOf(block.key);
     for (std::size_t i = 0; i < block.size(); ++i) {
       points.push_back(corner + block.point(i).cast<double>());
     }

@@ -70,14 +70,16 @@ private:
     float intensity = 0.0F;                            ///< of a point that is inserted
   };
 
+  [[nodiscard]] Eigen::Vector3d cornerOf(const VoxelKey& key) const
+  {
+    return block_size_ * Eigen::Vector3d(key.x, key.y, key.z);
+  }
   /// \return whether there can be one: finite, and within a billion blocks of the origin
   bool findPlace(const Eigen::Vector3d& point, BlockQuery& place) const;
   [[nodiscard]] std::uint32_t voxelAt(const Eigen::Vector3f& offset) const;
 
   [[nodiscard]] std::int32_t findBlock(const VoxelKey& key) const;
   std::int32_t findOrAddBlock(const VoxelKey& key);
-  void insertInTurn(const Eigen::Vector3d* points, const float* intensities, std::size_t count);
-  void insertShared(const Eigen::Vector3d* points, const float* intensities, std::size_t count, int threads);
   /// Makes a block and those around it known to each other.
   void link(std::int32_t block);
   void release(std::int32_t block);
@@ -97,7 +99,7 @@ private:
   std::pmr::vector<VoxelBlock> blocks_{&memory_};
   VoxelTable numbers_;               ///< of the blocks, from 1
   std::vector<std::int32_t> free_;   ///< blocks that were forgotten
-  std::vector<BlockQuery> places_;   ///< of the last points that threads shared ...
+  std::vector<BlockQuery> places_;   ///< of the last points that were inserted ...
   std::vector<std::int32_t> homes_;  ///< ... and their blocks
   std::size_t size_ = 0;
 };

@@ -115,27 +115,12 @@ void VoxelLayer::searchWide(const BlockQuery& query, double radius, NearestSoFar
 
 void VoxelLayer::nearest(const Eigen::Vector3d& query, int k, double radius, Neighbors& neighbors) const
 {
-  neighbors.count = 0;
-  BlockQuery place;
-  if (!findPlace(query, place)) {
-    return;
-  }
-  NearestSoFar nearest(k, static_cast<float>(radius * radius));
-  if (radius <= block_size_) {
-    searchAround(place, findBlock(place.key), nearest);
-  } else {
-    searchWide(place, radius, nearest);
-  }
-  nearest.write(neighbors, &VoxelBlock::point);
+  nearestOfEach(&query, 1, k, radius, &neighbors);
 }
 
 void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count, int k, double radius,
                                Neighbors* neighbors) const
 {
-  if (radius > block_size_) {
-    NeighborSearch::nearestOfEach(queries, count, k, radius, neighbors);
-    return;
-  }
   // Most of a search's time is waiting for memory. So each step is taken for some queries at once, and asks for what
   // the next one will read.
   constexpr std::size_t kTogether = 16;
@@ -163,7 +148,11 @@ void VoxelLayer::nearestOfEach(const Eigen::Vector3d* queries, std::size_t count
       neighbors[first + i].count = 0;
       if (is_there[i]) {
         NearestSoFar nearest(k, static_cast<float>(radius * radius));
-        searchAround(places[i], homes[i], nearest);
+        if (radius <= block_size_) {
+          searchAround(places[i], homes[i], nearest);
+        } else {
+          searchWide(places[i], radius, nearest);
+        }
         nearest.write(neighbors[first + i], &VoxelBlock::point);
       }
     }

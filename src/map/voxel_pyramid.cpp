@@ -3,18 +3,8 @@
 #include "common/prefetch.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace pcl_floam {
-
-namespace {
-
-Eigen::Vector3d middleOf(const VoxelKey& key)
-{
-  return {key.x + 0.5, key.y + 0.5, key.z + 0.5};
-}
-
-}  // namespace
 
 VoxelPyramid::VoxelPyramid(double side)
     : side_(side), inverse_side_(1.0 / side), squared_spacing_(static_cast<float>(side * side / kPointsPerLeaf))
@@ -23,7 +13,7 @@ VoxelPyramid::VoxelPyramid(double side)
 
 Eigen::Vector3d VoxelPyramid::centerOfBlock(const VoxelKey& block) const
 {
-  return sideOf(kLevels - 1) * middleOf(block);
+  return sideOf(kLevels - 1) * Eigen::Vector3d(block.x + 0.5, block.y + 0.5, block.z + 0.5);
 }
 
 /// \return false where no map reaches

@@ -20,26 +20,6 @@ Eigen::Vector3f towards(unsigned octant)
   return {(octant & 1U) != 0U ? 1.0F : -1.0F, (octant & 2U) != 0U ? 1.0F : -1.0F, (octant & 4U) != 0U ? 1.0F : -1.0F};
 }
 
-using Squared = std::array<float, VoxelCells::Leaf::kLanes>;
-
-/// Of a group's points.
-inline Squared squaredDistances(const VoxelCells::Leaf::Group& group, const Eigen::Vector3f& offset)
-{
-  Squared squared;
-  for (std::size_t lane = 0; lane < squared.size(); ++lane) {
-    const float x = group.x[lane] - offset.x();
-    const float y = group.y[lane] - offset.y();
-    const float z = group.z[lane] - offset.z();
-    squared[lane] = x * x + y * y + z * z;
-  }
-  return squared;
-}
-
-inline float leastOf(const Squared& s)
-{
-  return std::min(std::min(s[0], s[1]), std::min(s[2], s[3]));
-}
-
 }  // namespace
 
 /// From that of the block.
@@ -163,7 +143,7 @@ void VoxelPyramid::findNearest(Found found, const Eigen::Vector3f& center, const
 bool VoxelPyramid::isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const
 {
   for (std::size_t g = 0; g < leaf.used(); ++g) {
-    if (leastOf(squaredDistances(leaf.groups[g], offset)) < squared_spacing_) {
+    if (PointGroup::leastOf(leaf.groups[g].squaredDistances(offset)) < squared_spacing_) {
       return true;
     }
   }
@@ -173,8 +153,8 @@ bool VoxelPyramid::isNear(const Leaf& leaf, const Eigen::Vector3f& offset) const
 void VoxelPyramid::findNearest(const Leaf& leaf, const Eigen::Vector3f& offset, Nearest& nearest)
 {
   for (std::size_t g = 0; g < leaf.used(); ++g) {
-    const Squared squared = squaredDistances(leaf.groups[g], offset);
-    const float least = leastOf(squared);
+    const PointGroup::Lanes squared = leaf.groups[g].squaredDistances(offset);
+    const float least = PointGroup::leastOf(squared);
     if (least < nearest.squared) {
       const auto lane = static_cast<std::size_t>(std::find(squared.begin(), squared.end(), least) - squared.begin());
       nearest = {leaf.point(g * Leaf::kLanes + lane), least};

@@ -3,14 +3,10 @@
 #pragma once
 
 #include "common/hash.h"
-#include "common/prefetch.h"
 
 #include <Eigen/Core>
 
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -49,87 +45,6 @@ inline bool findKey(const Eigen::Vector3d& place, double inverse_side, VoxelKey&
 }
 
 /// Which number belongs to a packed key; 0 stands for none.
-class VoxelTable {
-public:
-  VoxelTable() : slots_(kFirst) {}
-
-  [[nodiscard]] std::uint32_t find(std::uint64_t key) const
-  {
-    std::size_t i = start(key);
-    while (slots_[i].key != 0 && slots_[i].key != key) {
-      i = next(i);
-    }
-    return slots_[i].value;
-  }
-
-  /// Lets the processor fetch what \ref find will look at.
-  void expect(std::uint64_t key) const { prefetch(&slots_[start(key)], sizeof(Slot)); }
-
-  /// The key must not be there yet.
-  void insert(std::uint64_t key, std::uint32_t value)
-  {
-    if (2 * (used_ + 1) > slots_.size()) {
-      std::vector<Slot> old(2 * slots_.size());
-      old.swap(slots_);
-      --shift_;
-      for (const Slot& slot : old) {
-        if (slot.key != 0) {
-          place(slot);
-        }
-      }
-    }
-    place({key, value});
-    ++used_;
-  }
-
-  /// The key must be there. What had to make way for it moves up.
-  void erase(std::uint64_t key)
-  {
-    std::size_t hole = start(key);
-    while (slots_[hole].key != key) {
-      hole = next(hole);
-    }
-    for (std::size_t i = next(hole); slots_[i].key != 0; i = next(i)) {
-      const std::size_t mask = slots_.size() - 1;
-      if (((i - start(slots_[i].key)) & mask) >= ((i - hole) & mask)) {
-        slots_[hole] = slots_[i];
-        hole = i;
-      }
-    }
-    slots_[hole] = {};
-    --used_;
-  }
-
-  void clear()
-  {
-    slots_.assign(slots_.size(), {});
-    used_ = 0;
-  }
-
-  [[nodiscard]] std::size_t size() const { return used_; }
-
-private:
-  static constexpr std::size_t kFirst = 1024;
-  static constexpr unsigned kFirstShift = 64 - 10;
-  struct Slot {
-    std::uint64_t key = 0;
-    std::uint32_t value = 0;
-  };
-
-  [[nodiscard]] std::size_t start(std::uint64_t key) const { return hashOf(key, shift_); }
-  [[nodiscard]] std::size_t next(std::size_t i) const { return (i + 1) & (slots_.size() - 1); }
-  void place(const Slot& slot)
-  {
-    std::size_t i = start(slot.key);
-    while (slots_[i].key != 0) {
-      i = next(i);
-    }
-    slots_[i] = slot;
-  }
-
-  std::vector<Slot> slots_;
-  unsigned shift_ = kFirstShift;  // leaves as many bits as number the slots
-  std::size_t used_ = 0;
-};
+using VoxelTable = HashTable<std::uint32_t>;
 
 }  // namespace pcl_floam

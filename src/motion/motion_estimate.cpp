@@ -36,11 +36,6 @@ Matrix12 turnOfBoth(const Eigen::Matrix3d& rotation)
 
 }  // namespace
 
-Matrix12 MotionEstimate::Growth::of(const Matrix12& covariance) const
-{
-  return propagated(transition, covariance) + noise;
-}
-
 MotionEstimate::MotionEstimate(const SE3& world_T_sensor, const Vector6& velocity)
     : pose_(world_T_sensor), velocity_(velocity)
 {
@@ -88,7 +83,7 @@ void MotionEstimate::predict(double periods, const std::optional<MotionHint>& hi
   const Matrix12 was = covariance_;
   const Matrix6 squared_motion = velocity_ * velocity_.transpose() + was.bottomRightCorner<6, 6>();
   growth.noise.topLeftCorner<6, 6>() += periods_error * periods_error * squared_motion;
-  covariance_ = growth.of(was);
+  covariance_ = propagated(growth.transition, was) + growth.noise;
   constexpr double kUnknown = 1.0;  // period: how many went by is not known, so what was off tells nothing
   periods_ = periods_error >= kUnknown || hint ? 0.0 : periods;
   if (hint) {

@@ -59,8 +59,6 @@ private:
   struct Growth {
     Matrix12 transition = Matrix12::Identity();
     Matrix12 noise = Matrix12::Zero();
-
-    [[nodiscard]] Matrix12 of(const Matrix12& covariance) const;
   };
 
   void advance(double periods, Growth& growth);

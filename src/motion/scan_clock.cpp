@@ -65,7 +65,8 @@ double ScanClock::tick(std::optional<double> stamp)
   last_stamp_ = stamp;
   const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
   if (elapsed > 0.0 && std::isfinite(elapsed)) {
-    remember(elapsed / (1.0 + counted));  // in any case: the period may have been taken from stamps that were wrong
+    recent_[remembered_++ % kRemembered] =
+        elapsed / (1.0 + counted);  // in any case: the period may have been taken from stamps that were wrong
   }
   if (!clock_was_set && elapsed <= kNoTime * usual) {
     standing_ = usual > 0.0 ? stood + 1 : 2;
@@ -76,11 +77,6 @@ double ScanClock::tick(std::optional<double> stamp)
     return 1.0;
   }
   return clock_was_set ? 1.0 : std::max(0.0, elapsed / period() - counted);
-}
-
-void ScanClock::remember(double elapsed)
-{
-  recent_[remembered_++ % kRemembered] = elapsed;
 }
 
 }  // namespace pcl_floam

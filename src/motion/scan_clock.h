@@ -29,8 +29,6 @@ public:
   [[nodiscard]] double period() const;
 
 private:
-  void remember(double elapsed);
-
   double given_period_;
   std::optional<double> last_stamp_;
   int standing_ = 0;        ///< the last stamps that did not advance

@@ -2,7 +2,7 @@
 /// Where the sensor was during a sweep.
 #pragma once
 
-#include <pcl_floam/common/se3.h>
+#include <pcl_floam/filters/core/sweep_motion.h>
 
 namespace pcl_floam {
 
@@ -13,10 +13,15 @@ struct SweepPose {
   Vector6 acceleration = Vector6::Zero();  ///< change of the twist over the sweep
 
   /// At another fraction of the sweep.
-  [[nodiscard]] SE3 at(double fraction) const;
+  [[nodiscard]] SE3 at(double fraction) const { return middle * motion().at(fraction); }
+
+  [[nodiscard]] SweepMotion motion() const { return SweepMotion(twist, 0.5, acceleration); }
 };
 
 /// Seen from elsewhere.
-[[nodiscard]] SweepPose operator*(const SE3& target_T_source, const SweepPose& pose);
+[[nodiscard]] inline SweepPose operator*(const SE3& target_T_source, const SweepPose& pose)
+{
+  return {target_T_source * pose.middle, pose.twist, pose.acceleration};
+}
 
 }  // namespace pcl_floam

@@ -88,9 +88,6 @@ void BackwardPass::takeNext(const Sweep& sweep, const SweepPose& pose, bool is_k
 
 std::vector<SweepPose> BackwardPass::poses(std::vector<SweepPose> forwards) const
 {
-  if (found_.empty()) {
-    return {};
-  }
   std::copy(found_.begin(), found_.end(), forwards.begin());
   return forwards;
 }

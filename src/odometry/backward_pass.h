@@ -25,7 +25,7 @@ public:
   bool step(const std::vector<Sweep>& kept, WorkShare& share);
   /// Whether all were found.
   [[nodiscard]] bool hasFound() const { return isDone() && !found_.empty(); }
-  /// Of all sweeps, those from the trusted ones on as they were found forwards; none if one was not found.
+  /// Of all sweeps, those from the trusted ones on as they were found forwards. \pre \ref hasFound
   [[nodiscard]] std::vector<SweepPose> poses(std::vector<SweepPose> forwards) const;
 
   /// So many sweeps, from the first one on, are in its map once it \ref hasFound.

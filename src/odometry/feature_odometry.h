@@ -40,7 +40,7 @@ struct FeatureOdometry : OdometryRun {
   {
     beginScan(cloud.size, stamp);
     extractFeatures(cloud);
-    if (!hasEnoughFeatures()) {
+    if (static_cast<int>(scan.features.edges.size() + scan.features.planes.size()) < kFewestCorrespondences) {
       return predictOnly(scan.lines.valid() ? "too few features" : toString(scan.lines.failure));
     }
     if (!started) {
@@ -56,12 +56,6 @@ struct FeatureOdometry : OdometryRun {
     updateMap(cloud);
     report.milliseconds.map += watch.lap();
     finish(toldState());
-  }
-
-  void miss(std::optional<double> stamp)
-  {
-    beginScan(0, stamp);
-    predictOnly("the scan is missing");
   }
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)
@@ -110,11 +104,6 @@ struct FeatureOdometry : OdometryRun {
     scan.takeFeatures(cloud, parameters);
     report.milliseconds.features = watch.lap();
     describeScan();
-  }
-
-  [[nodiscard]] bool hasEnoughFeatures() const
-  {
-    return static_cast<int>(scan.features.edges.size() + scan.features.planes.size()) >= kFewestCorrespondences;
   }
 
   /// The map begins with the first scan.

@@ -82,10 +82,9 @@ FirstMotionSearch::FirstMotionSearch(const Sweep& first, const Sweep& second, co
     looks.push_back({log(second.hint->last_T_now) / second.periods, kNear, 1});
   }
   const Matrix6 information = lookAt(looks)[1].information;
-  if (found_.empty()) {
-    return;
+  if (!found_.empty()) {
+    looks_ = looksAlong(hardlyKnown(information), second_);
   }
-  looks_ = looksAlong(hardlyKnown(information), second_);
 }
 
 std::vector<RegistrationReport> FirstMotionSearch::lookAt(const std::vector<FirstLook>& looks)

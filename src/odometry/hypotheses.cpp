@@ -6,8 +6,6 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
 namespace pcl_floam {
 
@@ -109,16 +107,6 @@ void Hypothesis::keepEvidenceOf(const std::vector<std::uint32_t>& places)
   }
 }
 
-double Hypothesis::evidence() const
-{
-  return is_lost ? -HUGE_VAL : track.evidence();
-}
-
-double Hypothesis::moved() const
-{
-  return is_lost ? HUGE_VAL : track.pose().middle.translation.norm();
-}
-
 void Hypotheses::add(Hypothesis added)
 {
   added.number = numbered_++;
@@ -127,23 +115,15 @@ void Hypotheses::add(Hypothesis added)
 
 bool Hypotheses::step(const Sweep& sweep, Rivals rivals, bool keeps_poses)
 {
-  eachSideBySide(front().track.settings().threads, all_.size(),
-                 [&](std::size_t i) { all_[i].step(sweep, rivals, keeps_poses); });
-  if (rivals == Rivals::directions) {
-    updateMaps(sweep);
-  }
-  return std::any_of(all_.begin(), all_.end(), [](const Hypothesis& h) { return !h.is_lost; });
-}
-
-void Hypotheses::updateMaps(const Sweep& sweep)
-{
+  const int threads = front().track.settings().threads;
+  eachSideBySide(threads, all_.size(), [&](std::size_t i) { all_[i].step(sweep, rivals, keeps_poses); });
   const auto goes_on = std::find_if(all_.begin(), all_.end(), [](const Hypothesis& h) { return !h.is_lost; });
-  if (goes_on == all_.end()) {
-    return;
+  if (rivals == Rivals::directions && goes_on != all_.end()) {
+    took_in_ = goes_on->track.isKeyframe();
+    eachSideBySide(threads, all_.size(),
+                   [&](std::size_t i) { all_[i].track.updateMap(sweep, took_in_ && !all_[i].is_lost); });
   }
-  took_in_ = goes_on->track.isKeyframe();
-  eachSideBySide(front().track.settings().threads, all_.size(),
-                 [&](std::size_t i) { all_[i].track.updateMap(sweep, took_in_ && !all_[i].is_lost); });
+  return goes_on != all_.end();
 }
 
 std::vector<double> Hypotheses::giveUpDirections(double behind)

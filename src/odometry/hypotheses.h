@@ -4,6 +4,7 @@
 
 #include "odometry/track.h"
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -36,8 +37,9 @@ struct Hypothesis {
   std::size_t without_trace = 0;  ///< first sweeps that did not tell of a direction
 
   [[nodiscard]] double direction() const { return track.settings().direction; }
-  [[nodiscard]] double evidence() const;
-  [[nodiscard]] double moved() const;  ///< m, from the first sweep on
+  [[nodiscard]] double evidence() const { return is_lost ? -HUGE_VAL : track.evidence(); }
+  /// m, from the first sweep on.
+  [[nodiscard]] double moved() const { return is_lost ? HUGE_VAL : track.pose().middle.translation.norm(); }
 
 private:
   void keepEvidenceOf(const std::vector<std::uint32_t>& places);
@@ -111,8 +113,6 @@ public:
   [[nodiscard]] bool hasRivalsInDirection() const;
 
 private:
-  void updateMaps(const Sweep& sweep);
-
   std::vector<Hypothesis> all_;
   bool took_in_ = false;
   std::size_t numbered_ = 0;

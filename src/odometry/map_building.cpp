@@ -2,43 +2,9 @@
 
 #include "common/sweep_trajectory.h"
 
-#include <pcl_floam/filters/core/sweep_motion.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <utility>
-#include <vector>
 
 namespace pcl_floam {
-
-namespace {
-
-SweepMotion motionDuring(const SweepPose& pose)
-{
-  return SweepMotion(pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
-}
-
-void undistort(const std::vector<ScanPoint>& measured, const SweepPose& pose, int threads,
-               std::vector<Eigen::Vector3f>& points)
-{
-  const SweepTrajectory sensor(SE3(), pose.twist, SweepTrajectory::kMiddle, pose.acceleration);
-  points.resize(measured.size());
-  constexpr std::ptrdiff_t kTogether = 256;
-  const auto count = static_cast<std::ptrdiff_t>(points.size());
-#pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t begin = 0; begin < count; begin += kTogether) {
-    const auto first = static_cast<std::size_t>(begin);
-    const auto some = static_cast<std::size_t>(std::min(kTogether, count - begin));
-    std::array<Eigen::Vector3d, kTogether> places;
-    sensor.undistorted(&measured[first], 1, some, places.data());
-    for (std::size_t i = 0; i < some; ++i) {
-      points[first + i] = places[i].cast<float>();
-    }
-  }
-}
-
-}  // namespace
 
 void MapBuilding::clear()
 {
@@ -53,6 +19,15 @@ void MapBuilding::begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sen
   world_T_keyframe_ = world_T_sensor;
 }
 
+void MapBuilding::undistort(const std::vector<ScanPoint>& measured, const SweepPose& world_T_sensor, int threads)
+{
+  const SweepTrajectory sensor(SE3(), world_T_sensor.twist, SweepTrajectory::kMiddle, world_T_sensor.acceleration);
+  all_undistorted_.resize(measured.size());
+  sensor.undistorted(measured, threads, [this](std::size_t i, const Eigen::Vector3d& place) {
+    all_undistorted_[i] = place.cast<float>();
+  });
+}
+
 bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const
 {
   if (!prior_ && keyframes_ == 0) {
@@ -64,7 +39,7 @@ bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy)
 
 void MapBuilding::insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads)
 {
-  compensate(measured, motionDuring(world_T_sensor), undistorted_, threads);
+  compensate(measured, world_T_sensor.motion(), undistorted_, threads);
   map_.insert(undistorted_, world_T_sensor.middle, threads);
   world_T_keyframe_ = world_T_sensor.middle;
   ++keyframes_;
@@ -89,7 +64,7 @@ bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPos
   if (is_keyframe) {
     if (map_.getParameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
       scan.takePoints(cloud, parameters);
-      undistort(scan.points, world_T_sensor, parameters.threads, all_undistorted_);
+      undistort(scan.points, world_T_sensor, parameters.threads);
       map_.forgetSeenThrough(all_undistorted_, world_T_sensor.middle, parameters.threads);
     }
     insert(scan.features, world_T_sensor, parameters.threads);

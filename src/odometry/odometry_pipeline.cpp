@@ -104,7 +104,10 @@ struct OdometryPipeline::Impl {
 
   const OdometryReport& miss(std::optional<double> stamp)
   {
-    visit([&](auto& odometry) { odometry.miss(stamp); });
+    visit([&](auto& odometry) {
+      odometry.beginScan(0, stamp);
+      odometry.predictOnly("the scan is missing");
+    });
     return noteReport();
   }
 

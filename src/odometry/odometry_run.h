@@ -58,6 +58,7 @@ struct OdometryRun {
     hint.elapse();
     periods += clock.tick(stamp);
     periods_error = std::hypot(periods_error, clock.error());
+    first_scans.elapse(periods);
   }
 
   /// The last scan came once more: what was told of it still holds.

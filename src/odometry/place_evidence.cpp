@@ -16,11 +16,8 @@ std::vector<std::uint32_t> placesOf(const std::vector<ScanPoint>& points, double
   for (const ScanPoint& point : points) {
     VoxelKey key;
     findKey(Eigen::Vector3f(point.x, point.y, point.z).cast<double>(), 1.0 / (kPlace * side), key);
-    std::uint32_t number = numbers.find(key.packed(0));
-    if (number == 0) {
-      number = static_cast<std::uint32_t>(numbers.size()) + 1;
-      numbers.insert(key.packed(0), number);
-    }
+    std::uint32_t& number = numbers[key.packed(0)];
+    number = number == 0 ? static_cast<std::uint32_t>(numbers.size()) : number;
     places.push_back(number - 1);
   }
   return places;

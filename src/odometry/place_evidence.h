@@ -4,7 +4,6 @@
 
 #include <pcl_floam/filters/core/scan_point.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -31,11 +31,6 @@ SurfaceRegistration registerFrom(SurfaceProblem problem, const SE3& guess, const
   return registerSurfaces(problem);
 }
 
-bool isBetter(const SurfaceRegistration& a, const SurfaceRegistration& b)
-{
-  return a.report.hasConverged() && (!b.report.hasConverged() || a.evidence > b.evidence);
-}
-
 /// A perturbation by one standard deviation, that by which a guess may move the points farthest.
 struct WidestDoubt {
   Vector6 perturbation;
@@ -51,12 +46,6 @@ struct WidestDoubt {
     perturbation = displacement * axes.eigenvectors().col(5).cwiseQuotient(units);
   }
 };
-
-/// Of the covariance of a guess, what a scan takes away: along what it does not tell, no place is better than another.
-Matrix6 settledBy(const SurfaceRegistration& found, const Matrix6& covariance)
-{
-  return propagated(covariance, inverseOf(Matrix6(covariance + found.told)));
-}
 
 }  // namespace
 
@@ -82,7 +71,8 @@ SurfaceRegistration registerAround(SurfaceProblem expected, double side)
   };
   expected.evidence = Evidence::total;
   SurfaceRegistration best = registerSurfaces(expected);
-  const WidestDoubt doubt(settledBy(best, free), range);
+  // The scan takes away covariance but along what it does not tell, where no place is better than another.
+  const WidestDoubt doubt(propagated(free, inverseOf(Matrix6(free + best.told))), range);
   if (!(doubt.displacement > kBasin * side)) {
     return best;
   }
@@ -131,7 +121,7 @@ std::optional<SE3> betterPlace(const SurfaceProblem& expected, double side, cons
   std::optional<SE3> place;
   for (const SE3& guess : guesses) {
     SurfaceRegistration found = registerFrom(expected, guess, doubt, Evidence::total);
-    if (isBetter(found, best)) {
+    if (found.report.hasConverged() && (!best.report.hasConverged() || found.evidence > best.evidence)) {
       best = std::move(found);
       place = best.report.target_T_source;
     }

@@ -36,12 +36,9 @@ void PreparedScan::findStructure(const CloudView& scan, const OdometryParameters
     lines = ScanLines();
     lines.failure = ScanLineFailure::single_layer;
   }
-  const auto timingBy = [&](ScanTimingSource source) {
-    return findScanTiming(scan, lines, source, parameters.threads);
-  };
-  timing = timingBy(parameters.timing_source);
+  timing = findScanTiming(scan, lines, parameters.timing_source, parameters.threads);
   if (!timing.valid() && turns_ && parameters.timing_source == ScanTimingSource::automatic) {
-    timing = timingBy(ScanTimingSource::azimuth);
+    timing = findScanTiming(scan, lines, ScanTimingSource::azimuth, parameters.threads);
   }
   turns_ = turns_ || timing.source == ScanTimingSource::azimuth;
   sweep_fraction = timing.valid() && parameters.compensation != CompensationMode::none ? 1.0 : 0.0;
@@ -83,8 +80,8 @@ ScanReturns PreparedScan::returnsOf(const CloudView& scan, const OdometryParamet
   return {scan,
           lines,
           timing,
-          static_cast<double>(parameters.features.min_range),
-          static_cast<double>(parameters.features.max_range),
+          parameters.features.min_range,
+          parameters.features.max_range,
           parameters.vertical_correction};
 }
 

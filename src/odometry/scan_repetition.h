@@ -20,7 +20,12 @@ public:
   /// them twice; without a stamp, a sensor of no noise might.
   bool isLastAgain(const CloudView& scan, std::optional<double> stamp)
   {
-    const std::uint64_t points = hashOfSome(scan);
+    constexpr std::size_t kSome = 256;
+    std::uint64_t points = 0;
+    const std::size_t stride = std::max<std::size_t>(1, scan.size / kSome);
+    for (std::size_t i = 0; i < scan.size; i += stride) {
+      points = hashOf(points ^ keyOf({scan.x(i), scan.y(i), scan.z(i)}), 0);
+    }
     const bool is_again = stamp && scan.size > 0 && stamp == stamp_ && scan.size == size_ && points == points_;
     stamp_ = stamp;
     size_ = scan.size;
@@ -29,20 +34,9 @@ public:
   }
 
 private:
-  static std::uint64_t hashOfSome(const CloudView& scan)
-  {
-    constexpr std::size_t kSome = 256;
-    std::uint64_t hash = 0;
-    const std::size_t stride = std::max<std::size_t>(1, scan.size / kSome);
-    for (std::size_t i = 0; i < scan.size; i += stride) {
-      hash = hashOf(hash ^ keyOf({scan.x(i), scan.y(i), scan.z(i)}), 0);
-    }
-    return hash;
-  }
-
   std::optional<double> stamp_;
   std::size_t size_ = 0;
-  std::uint64_t points_ = 0;
+  std::uint64_t points_ = 0;  // a hash of some
 };
 
 }  // namespace pcl_floam

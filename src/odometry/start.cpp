@@ -1,7 +1,6 @@
 #include "odometry/start.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <utility>
 
 namespace pcl_floam {
@@ -73,7 +72,8 @@ void Start::follow(WorkShare& share, Hypotheses& hypotheses)
   if (leavesNoTrace(hypotheses)) {
     hypotheses.putFirst(Preference::least_motion);
   }
-  if (canBeDecided(hypotheses)) {
+  const bool more_would_tell = hypotheses.hasRivalsInDirection() && !leavesNoTrace(hypotheses);
+  if (!isSearching() && !more_would_tell && hypotheses.front().poses.size() >= kFirstSweeps) {
     beginRevision(hypotheses);
   } else if (kept_.size() == kMostKept) {
     keeps_ = false;
@@ -85,12 +85,6 @@ bool Start::isUndecided(const Hypotheses& hypotheses) const
 {
   const bool has_rivals = hypotheses.hasRivalsInDirection() || (candidates_ && candidates_->areWaiting());
   return has_rivals && hypotheses.front().poses.size() >= kFirstSweeps && !isDecided();
-}
-
-bool Start::canBeDecided(const Hypotheses& hypotheses) const
-{
-  const bool more_would_tell = hypotheses.hasRivalsInDirection() && !leavesNoTrace(hypotheses);
-  return !isSearching() && !more_would_tell && hypotheses.front().poses.size() >= kFirstSweeps;
 }
 
 /// Whether most of the first sweeps do not tell of a direction, and nobody else did.

@@ -43,7 +43,6 @@ private:
     BackwardPass pass;
   };
 
-  [[nodiscard]] bool canBeDecided(const Hypotheses& hypotheses) const;
   [[nodiscard]] bool leavesNoTrace(const Hypotheses& hypotheses) const;
   void follow(WorkShare& share, Hypotheses& hypotheses);
   void beginRevision(Hypotheses& hypotheses);

@@ -4,14 +4,12 @@
 
 #include "common/side_by_side.h"
 #include "odometry/odometry_run.h"
-#include "odometry/reason_to_doubt.h"
 #include "odometry/tracker.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,12 +47,6 @@ struct SurfaceOdometry : OdometryRun {
     finish(judge());
   }
 
-  void beginScan(std::size_t points, std::optional<double> stamp)
-  {
-    OdometryRun::beginScan(points, stamp);
-    first_scans.elapse(periods);
-  }
-
   // Sensor Model and Feature Extraction
   void extractFeatures(const CloudView& cloud)
   {
@@ -85,7 +77,7 @@ struct SurfaceOdometry : OdometryRun {
 
   TrackingState judge()
   {
-    const char* doubt = reasonToDoubt(tracker, scan.lines.failure, report.explained, parameters.registration.locked);
+    const char* doubt = tracker.reasonToDoubt(scan.lines.failure, report.explained);
     if (doubt != nullptr) {
       report.reason = doubt;
       return TrackingState::doubtful;
@@ -202,12 +194,6 @@ struct SurfaceOdometry : OdometryRun {
     report.milliseconds.map += watch.lap();
   }
 
-  void miss(std::optional<double> stamp)
-  {
-    beginScan(0, stamp);
-    predictOnly("the scan is missing");
-  }
-
   /// A scan that told nothing, or none at all.
   void predictOnly(const char* reason)
   {
@@ -289,8 +275,8 @@ struct SurfaceOdometry : OdometryRun {
 
   void localizeIn(KeyframeVoxelMap given, MapUse use)
   {
-    tracker.localizeIn(given.points(FeatureKind::plane), given.points(FeatureKind::edge), initial_pose,
-                       use == MapUse::kept_current);
+    tracker.localizeIn(
+        {given.points(FeatureKind::plane), given.points(FeatureKind::edge), initial_pose, use == MapUse::kept_current});
     map_building.begin(std::move(given), use, initial_pose);
   }
 };

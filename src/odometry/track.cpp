@@ -70,6 +70,7 @@ SurfaceRegistration Track::begin(const Sweep& sweep, TrackMap map, const SE3& gu
 
 SurfaceRegistration Track::step(const Sweep& sweep, Rivals rivals)
 {
+  constexpr double kKept = 1.0 - 1.0 / kRememberedSweeps;  // of the evidence, from sweep to sweep
   const MotionEstimate before = motion_;
   const int waited_before = sweeps_to_wait_;
   is_keyframe_ = false;
@@ -77,7 +78,7 @@ SurfaceRegistration Track::step(const Sweep& sweep, Rivals rivals)
   SurfaceRegistration registration = registerPredicted(sweep, rivals);
   if (registration.report.hasConverged()) {
     if (rivals != Rivals::none) {
-      judge(registration);
+      evidence_ = kKept * evidence_ + likelihoodOf(registration, motion_.pose(), motion_.poseCovariance());
     }
     update(sweep, registration, rivals);
   } else {
@@ -189,13 +190,6 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
 
 /// What a hypothesis is worth, by the last sweeps. What was long ago counts less, since a moving sensor's map says
 /// little at first, and a resting one's all it ever will.
-void Track::judge(const SurfaceRegistration& registration)
-{
-  constexpr double kKept = 1.0 - 1.0 / kRememberedSweeps;  // of the evidence, from sweep to sweep
-  evidence_ = kKept * evidence_ + likelihoodOf(registration, motion_.pose(), motion_.poseCovariance());
-}
-
-/// Distortion Compensation Update (Eq. 12).
 void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, Rivals rivals)
 {
   const SE3 last = pose_.middle;

@@ -101,7 +101,6 @@ private:
   bool seek(const Sweep& sweep, const SurfaceRegistration& found);
   void settle(const Sweep& sweep, const SE3& guess, const Doubt& doubt);
   [[nodiscard]] SurfaceProblem problemFor(const Sweep& sweep) const;
-  void judge(const SurfaceRegistration& registration);
   void update(const Sweep& sweep, const SurfaceRegistration& registration, Rivals rivals);
 
   TrackSettings settings_;

@@ -1,7 +1,6 @@
 // How a track begins: with the motion that two sweeps share, or with sweeps whose poses are known.
 #include "odometry/track.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace pcl_floam {
@@ -14,15 +13,6 @@ Matrix12 oneMotion(double periods)
   constexpr double kRest = 1e-6;  // by how much it may be another at the end
   const Matrix6 one = Matrix6::Identity();
   return inBlocks(periods * periods * one, periods * one, periods * one, (1.0 + kRest) * one);
-}
-
-/// How far a motion is from what was told of it, in its standard deviations.
-double squaredError(const SE3& motion, const MotionHint& hint)
-{
-  const SE3 off = hint.last_T_now.inverse() * motion;
-  Vector6 error;
-  error << off.translation, logSO3(off.rotation);
-  return squaredDeviations(error, hint.covariance);
 }
 
 }  // namespace
@@ -64,7 +54,10 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
   }
   evidence_ = found.evidence;
   if (second.hint) {
-    evidence_ -= 0.5 * squaredError(first_T_second, *second.hint);
+    const SE3 off = second.hint->last_T_now.inverse() * first_T_second;
+    Vector6 error;
+    error << off.translation, logSO3(off.rotation);
+    evidence_ -= 0.5 * squaredDeviations(error, second.hint->covariance);
   }
   return found;
 }

@@ -7,11 +7,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <numeric>
-#include <optional>
 #include <utility>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -26,10 +23,8 @@ void placeEach(const std::vector<ScanPoint>& points, const SweepTrajectory& sens
   std::array<Eigen::Vector3d, kTogether> places;
   for (std::size_t begin = 0; begin < points.size(); begin += kTogether) {
     const std::size_t count = std::min(kTogether, points.size() - begin);
-    sensor.undistorted(&points[begin], 1, count, places.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      places[i] = sensor.pose() * places[i];
-    }
+    sensor.undistorted(&points[begin], 1, count,
+                       [&](std::size_t i, const Eigen::Vector3d& place) { places[i] = sensor.pose() * place; });
     take(&points[begin], places.data(), count);
   }
 }

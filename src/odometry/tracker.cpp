@@ -4,7 +4,7 @@
 #include "motion/rest.h"
 #include "odometry/place_evidence.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace pcl_floam {
 
@@ -22,13 +22,16 @@ constexpr int kMostFailures = 5;
 /// Sweeps after the start's end until which all poses since the first one wait for the direction of time to be found.
 constexpr std::size_t kMostToFindDirection = 12;
 
-}  // namespace
+/// Part of a scan: a pose is in doubt if less lies on surfaces of the map, whatever is usual in the scene.
+constexpr double kMostOfTheScan = 0.5;
 
-void Tracker::localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
-                         const SE3& guess, bool keeps_map)
+bool keepsLevel(const DegreesOfFreedom& locked)
 {
-  prior_map_ = {space, edges, guess, keeps_map};
+  return std::equal(locked.begin(), locked.end(), kPlanarMotion.begin(),
+                    [](bool is, bool asked) { return is || !asked; });
 }
+
+}  // namespace
 
 void Tracker::keepBest()
 {
@@ -59,13 +62,33 @@ SE3 Tracker::firstPose(double instant) const
   return rests ? rest.pose() : poses().front().at(instant);
 }
 
+const char* Tracker::reasonToDoubt(ScanLineFailure failure, double explained) const
+{
+  const bool is_open = start_ && isTracking() && !start_->isDecided();  // how the sensor began to move
+  if (is_open && start_->isUndecided(hypotheses_)) {  // for longer than the first sweeps usually need to tell
+    return "several motions explain the first scans: the pose may be wrong";
+  }
+  if (explained < kMostOfTheScan && !is_open) {
+    return "the map has no surface for most of the scan: the pose may be wrong";
+  }
+  if (failure == ScanLineFailure::single_layer && !keepsLevel(settings_.locked)) {
+    return "the scan is a single layer: height, roll and pitch may be wrong";
+  }
+  return nullptr;
+}
+
 void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
 {
   if (settings_.side == 0.0) {
     settings_.side = sampling_.sideFor(returns, kCellsPerRoot);
   }
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
-  choosePoints(sweep);
+  if (settings_.components.select_points) {
+    sweep.sample.clear();
+    settings_.components.select_points(sweep.dense, sweep.sample);
+  } else {
+    sampling_.sample(sweep.dense, settings_.side, sweep.sample);
+  }
   sweep.places.clear();
   if (!isTracking() || start_) {
     sweep.places = placesOf(sweep.sample, settings_.side);
@@ -73,21 +96,10 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
   findStraightRuns(returns, sweep.sample);
 }
 
-/// Which are registered of those that enter the map.
-void Tracker::choosePoints(Sweep& sweep)
-{
-  if (settings_.components.select_points) {
-    sweep.sample.clear();
-    settings_.components.select_points(sweep.dense, sweep.sample);
-  } else {
-    sampling_.sample(sweep.dense, settings_.side, sweep.sample);
-  }
-}
-
 Tracker::Outcome Tracker::step(const Sweep& sweep)
 {
   if (!isTracking()) {
-    return begin(sweep);
+    return prior_map_ ? beginInPriorMap(sweep) : beginWithFirstTwo(sweep);
   }
   if (start_ || hypotheses_.size() > 1) {
     return stepAll(sweep);
@@ -103,18 +115,6 @@ void Tracker::updateMap(const Sweep& sweep)
   if (isTracking()) {
     hypotheses_.front().track.updateMap(sweep);
   }
-}
-
-Tracker::Outcome Tracker::begin(const Sweep& sweep)
-{
-  if (prior_map_) {
-    return beginInPriorMap(sweep);
-  }
-  if (!start_) {
-    start_.emplace(sweep);
-    return {};
-  }
-  return beginWithSecond(sweep);
 }
 
 Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
@@ -138,9 +138,13 @@ Tracker::Outcome Tracker::beginInPriorMap(const Sweep& sweep)
   return outcome;
 }
 
-Tracker::Outcome Tracker::beginWithSecond(const Sweep& sweep)
+Tracker::Outcome Tracker::beginWithFirstTwo(const Sweep& sweep)
 {
   Outcome outcome;
+  if (!start_) {
+    start_.emplace(sweep);
+    return outcome;
+  }
   outcome.registration = start_->findMotion(sweep, settings_, hypotheses_);
   outcome.corrected = may_correct_ = isTracking();
   failed_ = isTracking() ? 0 : failed_ + 1;

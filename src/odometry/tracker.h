@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace pcl_floam {
@@ -17,9 +18,14 @@ class Tracker {
 public:
   explicit Tracker(const TrackSettings& settings) : settings_(settings) {}
 
+  struct PriorMap {
+    std::vector<Eigen::Vector3d> space, edges;
+    SE3 guess;  ///< of the next sweep
+    bool keeps_map = true;
+  };
+
   /// Sweeps that follow are localised in this map.
-  void localizeIn(const std::vector<Eigen::Vector3d>& space, const std::vector<Eigen::Vector3d>& edges,
-                  const SE3& guess, bool keeps_map);
+  void localizeIn(PriorMap map) { prior_map_ = std::move(map); }
 
   /// Of several tracks the best one of each direction of time stays, and no pose is corrected any more.
   void keepBest();
@@ -45,10 +51,12 @@ public:
   [[nodiscard]] bool hasBegun() const { return start_ || isTracking(); }
   /// Whether a motion is known.
   [[nodiscard]] bool isTracking() const { return !hypotheses_.empty(); }
-  /// Whether it is not decided yet how the sensor began to move.
-  [[nodiscard]] bool isOpen() const { return start_ && isTracking() && !start_->isDecided(); }
-  /// Whether that is open for longer than the first sweeps usually need to tell: others explain them about as well.
-  [[nodiscard]] bool isUndecided() const { return isOpen() && start_->isUndecided(hypotheses_); }
+  /// A pose that the map does not bear out is not called tracked, nor one of a single layer in space. The first
+  /// sweeps' map is too young to tell.
+  /// \param failure   why there are no scan lines, if there are none
+  /// \param explained part of the scan's points that lie on surfaces of the map
+  /// \return nullptr: there is none
+  [[nodiscard]] const char* reasonToDoubt(ScanLineFailure failure, double explained) const;
   /// Whether the poses since the first one may yet be corrected.
   [[nodiscard]] bool mayCorrect() const { return may_correct_; }
   /// Whether they may by much: several motions are or were followed, or are sought.
@@ -69,16 +77,8 @@ public:
   [[nodiscard]] SE3 firstPose(double instant) const;
 
 private:
-  struct PriorMap {
-    std::vector<Eigen::Vector3d> space, edges;
-    SE3 guess;
-    bool keeps_map = true;
-  };
-
-  void choosePoints(Sweep& sweep);
-  Outcome begin(const Sweep& sweep);
   Outcome beginInPriorMap(const Sweep& sweep);
-  Outcome beginWithSecond(const Sweep& sweep);
+  Outcome beginWithFirstTwo(const Sweep& sweep);
   Outcome stepAll(const Sweep& sweep);
 
   TrackSettings settings_;

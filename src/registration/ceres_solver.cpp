@@ -2,6 +2,7 @@
 
 #include "common/eigen_analysis.h"
 #include "common/perturbation.h"
+#include "registration/locked_motions.h"
 
 #include <ceres/ceres.h>
 
@@ -112,16 +113,11 @@ class EquationsCost : public ceres::SizedCostFunction<6, 6> {
 public:
   EquationsCost(const PoseEquations& equations, const DegreesOfFreedom& locked)
   {
-    Matrix6 information = equations.information;
     Vector6 gradient = equations.gradient;
     for (int i = 0; i < 6; ++i) {
-      if (locked[static_cast<std::size_t>(i)]) {
-        information.row(i).setZero();
-        information.col(i).setZero();
-        gradient[i] = 0.0;
-      }
+      gradient[i] = isLocked(locked, i) ? 0.0 : gradient[i];
     }
-    const EigenAnalysis axes = analyse(information);
+    const EigenAnalysis axes = analyse(withLocked(equations.information, locked, 0.0));
     const double negligible = 1e-12 * axes.values[5];
     for (int i = 0; i < 6; ++i) {
       const double d = axes.values[i];
@@ -147,12 +143,6 @@ private:
   Vector6 residual_ = Vector6::Zero();
 };
 
-/// The perturbation's rotation vector is exp's, its translation is applied after it: the twist of the same motion.
-Vector6 asTwist(const Vector6& perturbation)
-{
-  return log(SE3(expSO3(perturbation.tail<3>()), perturbation.head<3>()));
-}
-
 }  // namespace
 
 Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& model,
@@ -177,7 +167,8 @@ Vector6 solveWithCeres(const RegistrationProblem& problem, const SweepModel& mod
   if (!summary.IsSolutionUsable()) {
     return Vector6::Zero();
   }
-  return asTwist(perturbation);
+  // Its rotation vector is exp's, its translation is applied after it: the twist of the same motion.
+  return log(SE3(expSO3(perturbation.tail<3>()), perturbation.head<3>()));
 }
 
 }  // namespace pcl_floam

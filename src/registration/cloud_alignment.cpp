@@ -34,8 +34,9 @@ Termination CloudAlignment::align(CloudMatching& alignment, int most, double eps
 
 NormalEquations CloudAlignment::evaluate(CloudMatching& level) const
 {
-  NormalEquations sums = level.evaluate(pose_, [this](const SE3& pose) { return toFrames(pose); });
-  const PoseEquations known = factors_.at(toFrames(pose_), arm());
+  const SE3 target_T_source = toFrames(pose_);
+  NormalEquations sums = level.evaluate(pose_, target_T_source);
+  const PoseEquations known = factors_.at(target_T_source, arm());
   sums.information += sums.residualVariance() * known.information;  // as so many matches of weight 1
   sums.gradient += sums.residualVariance() * known.gradient;
   return sums;
@@ -45,7 +46,13 @@ void CloudAlignment::move(const Vector6& perturbation)
 {
   pose_.rotation = nearestRotation(expSO3(perturbation.tail<3>()) * pose_.rotation);
   pose_.translation += perturbation.head<3>();
-  lockTranslation();
+  // A turn about the centroid, which is straight to first order, has added something to what is locked.
+  const SE3 pose = toFrames(pose_);
+  for (int i = 0; i < 3; ++i) {
+    if (run_.locked[static_cast<std::size_t>(i)]) {
+      pose_.translation[i] += run_.guess.translation[i] - pose.translation[i];
+    }
+  }
 }
 
 /// Applies a step. \return true if the user says that it is enough
@@ -61,17 +68,6 @@ bool CloudAlignment::take(const Vector6& step, const CloudMatching& alignment, b
   iteration.step = iteration.target_T_source * before.inverse();
   iteration.matches = &alignment.matches();
   return run_.iterated(iteration);
-}
-
-/// Takes out what a turn about the centroid, which is straight to first order, has added.
-void CloudAlignment::lockTranslation()
-{
-  const SE3 pose = toFrames(pose_);
-  for (int i = 0; i < 3; ++i) {
-    if (run_.locked[static_cast<std::size_t>(i)]) {
-      pose_.translation[i] += run_.guess.translation[i] - pose.translation[i];
-    }
-  }
 }
 
 }  // namespace pcl_floam

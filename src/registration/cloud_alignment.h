@@ -51,7 +51,6 @@ public:
 
 private:
   bool take(const Vector6& step, const CloudMatching& alignment, bool watched);
-  void lockTranslation();
 
   const CloudRegistrationRun& run_;
   PoseFactors factors_;

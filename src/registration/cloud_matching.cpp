@@ -38,13 +38,34 @@ CloudMatching::CloudMatching(const CloudLevel& source, const CloudLevel& target,
 {
 }
 
+NormalEquations CloudMatching::evaluate(const SE3& pose, const SE3& target_T_source)
+{
+  if (run_.search && finest_) {
+    askUsersSearch(pose, target_T_source);
+  } else {
+    searchNearest(pose);
+  }
+  if (run_.reciprocal) {
+    keepReciprocal(pose);
+  }
+  narrow();
+  if (run_.reject || run_.wants_matches) {
+    listMatches();
+  }
+  if (run_.reject && !coincide()) {
+    run_.reject(target_T_source, matches_);
+    keepListed();
+  }
+  weigh(pose);
+  return sum(pose);
+}
+
 void CloudMatching::searchNearest(const SE3& pose)
 {
   const auto bound =
       static_cast<float>(std::min(gate_ * gate_, static_cast<double>(std::numeric_limits<float>::max())));
 #pragma omp parallel for num_threads(run_.threads) schedule(dynamic, 1024)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < match_.size(); ++i) {
     const Eigen::Vector3f query = (pose * source_.tree.points()[i].cast<double>()).cast<float>();
     searchNearest(i, query, bound);
   }
@@ -110,8 +131,7 @@ void CloudMatching::keepReciprocal(const SE3& pose)
 {
   const SE3 back = pose.inverse();
 #pragma omp parallel for num_threads(run_.threads) schedule(dynamic, 1024)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < match_.size(); ++i) {
     if (match_[i] >= 0) {
       const Eigen::Vector3d there = target_.tree.points()[static_cast<std::size_t>(match_[i])].cast<double>();
       float limit = std::numeric_limits<float>::max();
@@ -149,12 +169,11 @@ double CloudMatching::agreementAt(const SE3& pose) const
   constexpr std::size_t kEnough = 2000;
   const double beside = std::min(run_.max_distance, kBesideSpacings * spacing_);
   const std::size_t stride = std::max<std::size_t>(1, match_.size() / kEnough);
-  const auto count = static_cast<std::ptrdiff_t>(match_.size() / stride);
+  const std::size_t count = match_.size() / stride;
   std::ptrdiff_t near = 0;
   std::ptrdiff_t agreeing = 0;
 #pragma omp parallel for num_threads(run_.threads) schedule(static) reduction(+ : agreeing, near)
-  for (std::ptrdiff_t n = 0; n < count; ++n) {
-    const std::size_t i = static_cast<std::size_t>(n) * stride;
+  for (std::size_t i = 0; i < count * stride; i += stride) {
     auto squared = static_cast<float>(beside * beside);
     const int found = target_.tree.nearest((pose * source_.tree.points()[i].cast<double>()).cast<float>(), squared);
     if (found >= 0) {

@@ -11,7 +11,6 @@
 
 #include <Eigen/Core>
 
-#include <cstdint>
 #include <vector>
 
 namespace pcl_floam {
@@ -30,21 +29,8 @@ public:
 
   /// Finds the matches at a pose and sums up what they say of a perturbation on the left that turns about the source's
   /// centroid. A match's weight is that of its three dimensions.
-  /// \param to_frames from the pose between the origins to the one between the clouds' frames
-  template <typename ToFrames>
-  NormalEquations evaluate(const SE3& pose, const ToFrames& to_frames)
-  {
-    findMatches(pose, to_frames);
-    if (run_.reject || run_.wants_matches) {
-      listMatches();
-    }
-    if (run_.reject && !coincide()) {
-      run_.reject(to_frames(pose), matches_);
-      keepListed();
-    }
-    weigh(pose);
-    return sum(pose);
-  }
+  /// \param target_T_source the same pose between the clouds' frames
+  NormalEquations evaluate(const SE3& pose, const SE3& target_T_source);
 
   /// Part of the source's points that lie on the target's surfaces at a pose, less that of those that lie near these
   /// but beside them, or across. What goes on where these end, or is far from any, speaks neither for a pose nor
@@ -71,20 +57,6 @@ private:
     bool found = false;                               ///< by that search
   };
 
-  template <typename ToFrames>
-  void findMatches(const SE3& pose, const ToFrames& to_frames)
-  {
-    if (run_.search && finest_) {
-      askUsersSearch(pose, to_frames(pose));
-    } else {
-      searchNearest(pose);
-    }
-    if (run_.reciprocal) {
-      keepReciprocal(pose);
-    }
-    narrow();
-  }
-  /// \param pose, target_T_source the same between the pyramids' origins and between the clouds' frames
   void askUsersSearch(const SE3& pose, const SE3& target_T_source);
   void searchNearest(const SE3& pose);
   void searchNearest(std::size_t i, const Eigen::Vector3f& query, float bound);

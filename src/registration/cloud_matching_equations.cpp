@@ -38,8 +38,7 @@ CloudMatching::Residual CloudMatching::residual(const SE3& pose, std::size_t i, 
 void CloudMatching::weigh(const SE3& pose)
 {
 #pragma omp parallel for num_threads(run_.threads) schedule(static)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(match_.size()); ++n) {
-    const auto i = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < match_.size(); ++i) {
     if (match_[i] >= 0) {
       residuals_[i] = residual(pose, i, static_cast<std::size_t>(match_[i]));
     } else {

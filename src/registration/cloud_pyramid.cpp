@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <utility>
 
 namespace pcl_floam {
 
@@ -153,52 +151,48 @@ std::vector<Eigen::Vector3f> someOf(const std::vector<Eigen::Vector3f>& points)
   return some;
 }
 
-/// The cloud in voxels as small as its sampling allows, each level with twice the size; itself if none does.
+/// A cloud that a sampling does not allow, in voxels as small as it does, each level with twice the size; itself if
+/// none is allowed. \param allows takes the sampling of all points, and of those of the level
 template <typename Allows>
-CloudLevel thinnedUntil(CloudLevel finest, const std::vector<Eigen::Vector3f>& places, double spacing,
-                        std::size_t fewest, const Allows& allows)
+CloudLevel thinnedUntil(CloudLevel all, std::size_t fewest, const Allows& allows)
 {
-  double voxel = kFirstVoxel * spacing;
+  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
+  const Sampling sampling = findSampling(all.tree, places);
+  if (allows(sampling, sampling)) {
+    return all;
+  }
+  double voxel = kFirstVoxel * sampling.spacing;
   while (voxel > 0.0) {
-    CloudLevel thinned = bareThinned(finest, voxel);
+    CloudLevel thinned = bareThinned(all, voxel);
     if (thinned.tree.size() < fewest) {
       break;
     }
-    if (allows(findSampling(thinned.tree, places))) {
+    if (allows(sampling, findSampling(thinned.tree, places))) {
       return thinned;
     }
     voxel *= 2.0;
   }
-  return finest;
+  return all;
 }
 
 /// Lines that are gone from a cloud once it is thinned are the sensor's scan lines, and the points of one of these lie
 /// on that laser's cone, whatever it hit. Then the thinned cloud takes the place of the one given.
 CloudLevel withoutScanLines(CloudLevel all)
 {
-  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
-  const Sampling sampling = findSampling(all.tree, places);
-  if (!sampling.in_lines) {
-    return all;
-  }
-  return thinnedUntil(std::move(all), places, sampling.spacing, kCoarsestPoints,
-                      [](const Sampling& s) { return !s.in_lines; });
+  return thinnedUntil(std::move(all), kCoarsestPoints,
+                      [](const Sampling& /*all*/, const Sampling& s) { return !s.in_lines; });
 }
 
 /// What is a surface once it is thinned was hidden by noise: its neighbourhoods are as thick as wide, so that each
 /// point would hold the pose in all directions.
 CloudLevel withoutNoise(CloudLevel all)
 {
-  constexpr double kMostShapeless = 1.0 / 3.0;  // of all places: scattered scenes have as many, whatever the voxels
-  constexpr double kClearlyFewer = 2.0 / 3.0;   // times as many
-  const std::vector<Eigen::Vector3f> places = someOf(all.tree.points());
-  const Sampling sampling = findSampling(all.tree, places);
-  if (sampling.shapeless <= kMostShapeless) {
-    return all;
-  }
-  const double most = std::min(kMostShapeless, kClearlyFewer * sampling.shapeless);
-  return thinnedUntil(std::move(all), places, sampling.spacing, kFewPoints,
-                      [most](const Sampling& s) { return s.shapeless <= most; });
+  return thinnedUntil(std::move(all), kFewPoints, [](const Sampling& all_points, const Sampling& s) {
+    constexpr double kMostShapeless = 1.0 / 3.0;  // of all places: scattered scenes have as many, whatever the voxels
+    constexpr double kClearlyFewer = 2.0 / 3.0;   // times as many
+    return all_points.shapeless <= kMostShapeless ||
+           s.shapeless <= std::min(kMostShapeless, kClearlyFewer * all_points.shapeless);
+  });
 }
 
 }  // namespace
@@ -208,26 +202,18 @@ CloudLevel thinnedLevel(const CloudLevel& finer, double voxel, int threads)
   return withShapes(bareThinned(finer, voxel), threads);
 }
 
-CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
-    : CloudPyramid(threads)
+CloudPyramid::CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads,
+                           bool is_rough)
+    : threads_(threads)
 {
-  const Points points = takePoints(cloud, selectable);
-  CloudLevel all = bareLevel(points.position, points.number);
-  all.rounding = kFloatRounding * points.largest;
+  CloudLevel all = takePoints(cloud, selectable);
+  if (is_rough) {
+    full_ = thinnedLevel(all, std::max(kRoughVoxel * extent_, std::numeric_limits<double>::min()), threads);
+    return;
+  }
+  std::vector<std::pair<int, int>> repeated = std::move(all.repeated);
   full_ = withShapes(withoutNoise(withoutScanLines(std::move(all))), threads);
-  full_.repeated = points.repeated;
-}
-
-std::unique_ptr<CloudPyramid> CloudPyramid::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable,
-                                                    int threads)
-{
-  std::unique_ptr<CloudPyramid> pyramid(new CloudPyramid(threads));
-  const Points points = pyramid->takePoints(cloud, selectable);
-  CloudLevel all = bareLevel(points.position, points.number);
-  all.rounding = kFloatRounding * points.largest;
-  pyramid->full_ =
-      thinnedLevel(all, std::max(kRoughVoxel * pyramid->extent_, std::numeric_limits<double>::min()), threads);
-  return pyramid;
+  full_.repeated = std::move(repeated);
 }
 
 const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const
@@ -235,38 +221,42 @@ const std::vector<CloudLevel>& CloudPyramid::thinnedLevels() const
   std::call_once(thinned_once_, [this] {
     double voxel = kFirstVoxel * full_.spacing;
     for (const CloudLevel* last = &full_; voxel > 0.0 && last->tree.size() > kCoarsestPoints; voxel *= 2.0) {
-      CloudLevel next = thinnedLevel(*last, voxel, threads_);
-      thinned_.push_back(std::move(next));
+      thinned_.push_back(thinnedLevel(*last, voxel, threads_));
       last = &thinned_.back();
     }
   });
   return thinned_;
 }
 
-CloudPyramid::Points CloudPyramid::takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
+/// Without shapes.
+CloudLevel CloudPyramid::takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable)
 {
-  Points points;
-  points.number = usablePoints(cloud, selectable);
-  points.repeated = dropRepeated(cloud, points.number);
+  std::vector<int> numbers = usablePoints(cloud, selectable);
+  std::vector<std::pair<int, int>> repeated = dropRepeated(cloud, numbers);
   const auto position = [&](int i) {
     const auto n = static_cast<std::size_t>(i);
     return Eigen::Vector3d(cloud.x(n), cloud.y(n), cloud.z(n));
   };
-  const double count = std::max(1.0, static_cast<double>(points.number.size()));
-  for (const int i : points.number) {
+  const double count = std::max(1.0, static_cast<double>(numbers.size()));
+  double largest = 0.0;  // m; of the coordinates in the cloud's frame
+  for (const int i : numbers) {
     origin_ += position(i);
-    points.largest = std::max(points.largest, position(i).cwiseAbs().maxCoeff());
+    largest = std::max(largest, position(i).cwiseAbs().maxCoeff());
   }
   origin_ /= count;
-  points.position.reserve(points.number.size());
+  std::vector<Eigen::Vector3f> relative;
+  relative.reserve(numbers.size());
   double squares = 0.0;
-  for (const int i : points.number) {
-    const Eigen::Vector3d relative = position(i) - origin_;
-    squares += relative.squaredNorm();
-    points.position.emplace_back(relative.cast<float>());
+  for (const int i : numbers) {
+    const Eigen::Vector3d from_origin = position(i) - origin_;
+    squares += from_origin.squaredNorm();
+    relative.emplace_back(from_origin.cast<float>());
   }
   extent_ = std::sqrt(squares / count);
-  return points;
+  CloudLevel all = bareLevel(relative, numbers);
+  all.repeated = std::move(repeated);
+  all.rounding = kFloatRounding * largest;
+  return all;
 }
 
 }  // namespace pcl_floam

@@ -10,7 +10,6 @@
 #include <Eigen/Core>
 
 #include <cstdint>
-#include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -39,11 +38,8 @@ struct CloudLevel {
 class CloudPyramid {
 public:
   /// \param selectable one flag per point of the cloud; empty: all
-  CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads);
-
-  /// A pyramid whose level 0 is thinned already, for clouds of which only a rough picture is needed.
-  [[nodiscard]] static std::unique_ptr<CloudPyramid> thinned(const CloudView& cloud,
-                                                             const std::vector<std::uint8_t>& selectable, int threads);
+  /// \param is_rough    thinned from the first level on, for clouds of which only a rough picture is needed
+  CloudPyramid(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads, bool is_rough = false);
 
   [[nodiscard]] bool empty() const { return full_.tree.empty(); }
 
@@ -62,15 +58,7 @@ public:
   [[nodiscard]] const std::vector<CloudLevel>& thinnedLevels() const;
 
 private:
-  struct Points {
-    std::vector<Eigen::Vector3f> position;      ///< relative to the origin
-    std::vector<int> number;                    ///< in the cloud
-    std::vector<std::pair<int, int>> repeated;  ///< as \ref CloudLevel has them
-    double largest = 0.0;                       ///< m; of the coordinates in the cloud's frame
-  };
-
-  explicit CloudPyramid(int threads) : threads_(threads) {}
-  Points takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
+  CloudLevel takePoints(const CloudView& cloud, const std::vector<std::uint8_t>& selectable);
 
   CloudLevel full_;
   mutable std::once_flag thinned_once_;

@@ -48,7 +48,10 @@ public:
       findStart(source_, target_, run_, alignment_);
     }
     CloudMatching level(source_.full(), target_.full(), run_, true, along());
-    const double epsilon = finestEpsilon(level.spacing());
+    // The user's threshold if it is the finer one, as far as single precision goes.
+    const double usual = kEpsilon * level.spacing();
+    const double epsilon =
+        run_.epsilon > 0.0 ? std::min(usual, std::max(run_.epsilon, kAtRest * level.spacing())) : usual;
     report_.termination = alignment_.align(level, run_.max_iterations, epsilon, true);
     report_.iterations = alignment_.iterations();
     WeakDirections weak(alignment_, level, kWeak * kAlongSurfaces);
@@ -72,13 +75,6 @@ private:
   [[nodiscard]] double along() const
   {
     return std::min(source_.full().tree.size(), target_.full().tree.size()) < kFewPoints ? kAlongOfFew : kAlongSurfaces;
-  }
-
-  /// The user's threshold if it is the finer one, as far as single precision goes.
-  [[nodiscard]] double finestEpsilon(double spacing) const
-  {
-    const double finest = run_.epsilon > 0.0 ? std::max(run_.epsilon, kAtRest * spacing) : kEpsilon * spacing;
-    return std::min(kEpsilon * spacing, finest);
   }
 
   /// \param shares see WeakDirections
@@ -126,7 +122,7 @@ PreparedCloud::PreparedCloud(const CloudView& cloud, const std::vector<std::uint
 
 PreparedCloud PreparedCloud::thinned(const CloudView& cloud, const std::vector<std::uint8_t>& selectable, int threads)
 {
-  return PreparedCloud(CloudPyramid::thinned(cloud, selectable, threads));
+  return PreparedCloud(std::make_unique<CloudPyramid>(cloud, selectable, threads, true));
 }
 
 PreparedCloud::PreparedCloud(std::unique_ptr<CloudPyramid> pyramid) : pyramid_(std::move(pyramid)) {}

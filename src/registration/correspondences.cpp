@@ -45,72 +45,51 @@ struct FeatureKindProblem {
   std::optional<Factor> (*fit)(const Neighbors&);
 };
 
-/// The features whose neighbours are searched at one time.
-class Batch {
-public:
-  void begin() { count_ = 0; }
-
-  void ask(std::size_t feature, const Eigen::Vector3d& query)
-  {
-    feature_[count_] = feature;
-    query_[count_] = query;
-    ++count_;
+/// Links a feature to what was found around it.
+void link(const FeatureKindProblem& kind, const Neighbors& found, double weight, Correspondence& correspondence)
+{
+  correspondence.weight = 0.0;
+  correspondence.searched_at = correspondence.point;
+  const auto fit = found.count < kFitNeighbors ? std::nullopt : kind.fit(found);
+  if (fit) {
+    correspondence.factor = *fit;
+    correspondence.factor.center += correspondence.point;
+    correspondence.weight = weight;
   }
-
-  /// Links the features asked for to what is found around them.
-  void link(const FeatureKindProblem& kind, double search_radius, std::vector<Correspondence>& correspondences)
-  {
-    kind.search.nearestOfEach(query_.data(), count_, kFitNeighbors, search_radius, found_.data());
-    for (std::size_t n = 0; n < count_; ++n) {
-      Correspondence& correspondence = correspondences[feature_[n]];
-      correspondence.weight = 0.0;
-      correspondence.searched_at = correspondence.point;
-      const auto fit = found_[n].count < kFitNeighbors ? std::nullopt : kind.fit(found_[n]);
-      if (fit) {
-        correspondence.factor = *fit;
-        correspondence.factor.center += correspondence.point;
-        correspondence.weight = kind.weights[feature_[n]];
-      }
-    }
-  }
-
-  static constexpr std::size_t kMost = 16;
-
-private:
-  std::size_t count_ = 0;
-  std::array<std::size_t, kMost> feature_{};
-  std::array<Eigen::Vector3d, kMost> query_;
-  std::array<Neighbors, kMost> found_;
-};
+}
 
 void findOfOneKind(const RegistrationProblem& problem, const FeatureKindProblem& kind,
                    const SweepTrajectory& trajectory, double search_radius, std::size_t stride,
                    std::vector<Correspondence>& correspondences)
 {
   correspondences.resize(kind.features.size());
+  constexpr std::size_t kSearchedAtOnce = 16;
   const double negligible = kNegligible * search_radius;
   const std::size_t looked_at = (kind.features.size() + stride - 1) / stride;
-  const auto batches = static_cast<std::ptrdiff_t>((looked_at + Batch::kMost - 1) / Batch::kMost);
 #pragma omp parallel num_threads(problem.threads)
   {
-    Batch batch;
+    std::array<std::size_t, kSearchedAtOnce> asked;  // those whose neighbours are searched
+    std::array<Eigen::Vector3d, kSearchedAtOnce> queries;
+    std::array<Neighbors, kSearchedAtOnce> found;
     // Each feature writes its own element only: the result does not depend on who computes what.
 #pragma omp for schedule(dynamic, 4)
-    for (std::ptrdiff_t b = 0; b < batches; ++b) {
-      const std::size_t first = static_cast<std::size_t>(b) * Batch::kMost;
-      const std::size_t last = std::min(first + Batch::kMost, looked_at);
-      std::array<Eigen::Vector3d, Batch::kMost> places;
-      trajectory.undistorted(&kind.features[first * stride], stride, last - first, places.data());
-      batch.begin();
-      for (std::size_t n = first; n < last; ++n) {
-        Correspondence& correspondence = correspondences[n * stride];
-        correspondence.point = trajectory.pose() * places[n - first];
-        correspondence.since_reference = trajectory.sinceReference(static_cast<double>(kind.features[n * stride].time));
+    for (std::size_t first = 0; first < looked_at; first += kSearchedAtOnce) {
+      std::size_t count = 0;
+      const auto ask = [&](std::size_t n, const Eigen::Vector3d& place) {
+        const std::size_t feature = (first + n) * stride;
+        Correspondence& correspondence = correspondences[feature];
+        correspondence.point = trajectory.pose() * place;
+        correspondence.since_reference = trajectory.sinceReference(static_cast<double>(kind.features[feature].time));
         if (!((correspondence.point - correspondence.searched_at).squaredNorm() < negligible * negligible)) {
-          batch.ask(n * stride, problem.origin + correspondence.point);
+          queries[count] = problem.origin + correspondence.point;
+          asked[count++] = feature;
         }
+      };
+      trajectory.undistorted(&kind.features[first * stride], stride, std::min(kSearchedAtOnce, looked_at - first), ask);
+      kind.search.nearestOfEach(queries.data(), count, kFitNeighbors, search_radius, found.data());
+      for (std::size_t n = 0; n < count; ++n) {
+        link(kind, found[n], kind.weights[asked[n]], correspondences[asked[n]]);
       }
-      batch.link(kind, search_radius, correspondences);
     }
   }
 }

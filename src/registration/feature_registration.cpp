@@ -39,12 +39,6 @@ std::vector<Feature> evenly(const std::vector<Feature>& features, std::size_t mo
   return taken;
 }
 
-/// The features that are registered.
-FeatureSet sampleOf(const FeatureSet& source)
-{
-  return {evenly(source.edges, kMostPlanes / kPlanesPerEdge), evenly(source.planes, kMostPlanes)};
-}
-
 /// One registration in progress.
 class FeaturePoseEstimation {
 public:
@@ -120,7 +114,9 @@ private:
       report_.termination = Termination::too_few_correspondences;
       return true;
     }
-    return take(solve(scales, besides));
+    return take(problem_.parameters.solver == SolverKind::ceres
+                    ? solveWithCeres(problem_, model_, correspondences_, scales, besides)
+                    : analysis().step());
   }
 
   [[nodiscard]] InformationAnalysis analysis() const
@@ -136,13 +132,6 @@ private:
     known.information *= variance;
     known.gradient *= variance;
     return known;
-  }
-
-  [[nodiscard]] Vector6 solve(const KernelScales& scales, const PoseEquations& besides) const
-  {
-    return problem_.parameters.solver == SolverKind::ceres
-               ? solveWithCeres(problem_, model_, correspondences_, scales, besides)
-               : analysis().step();
   }
 
   /// Applies a step on the left (Eq. 11). \return true when the iterations are over
@@ -236,7 +225,7 @@ RegistrationReport registerFeatures(const FeatureSet& source, const FeatureTarge
     report.termination = Termination::empty_target;
     return report;
   }
-  const FeatureSet sample = sampleOf(source);
+  const FeatureSet sample{evenly(source.edges, kMostPlanes / kPlanesPerEdge), evenly(source.planes, kMostPlanes)};
   return FeaturePoseEstimation(sample, target, run, parameters).run();
 }
 

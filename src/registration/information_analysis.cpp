@@ -76,28 +76,9 @@ double InformationAnalysis::leastInformation() const
   return std::max(weak_threshold_, kNoInformation * largest());
 }
 
-int InformationAnalysis::below(double limit) const
-{
-  int count = 0;
-  while (count < eigenvalues_.size() && eigenvalues_[count] < limit) {
-    ++count;
-  }
-  return count;
-}
-
-Vector6 InformationAnalysis::motion(int i) const
-{
-  return scale_.cwiseProduct(eigenvectors_.col(i));
-}
-
 double InformationAnalysis::part(const Vector6& perturbation, int i) const
 {
   return eigenvectors_.col(i).dot(perturbation.cwiseQuotient(scale_));
-}
-
-double InformationAnalysis::length(const Vector6& perturbation) const
-{
-  return perturbation.cwiseQuotient(scale_).norm();
 }
 
 Vector6 InformationAnalysis::step() const
@@ -120,7 +101,8 @@ Matrix6 InformationAnalysis::covariance(double variance, const std::vector<doubl
     inverse.col(i) *= times;
   }
   const Motions motions = scale_.asDiagonal() * eigenvectors_;
-  return variance / weight_ * outOf(inverse, motions);
+  const Motions half = motions * inverse;
+  return variance / weight_ * Matrix6(half * motions.transpose());
 }
 
 std::vector<WeakDirection> InformationAnalysis::weakDirections(double limit, const std::vector<double>& shares) const

@@ -34,19 +34,19 @@ public:
   [[nodiscard]] Vector6 step() const;
 
   /// How many directions, from the least to the best held, have an eigenvalue below a limit.
-  [[nodiscard]] int below(double limit) const;
+  [[nodiscard]] int below(double limit) const { return static_cast<int>((eigenvalues_.array() < limit).count()); }
   [[nodiscard]] double largest() const;
 
   /// A perturbation along direction \p i that moves the typical point by 1 m, and the gradient along it per m, as the
   /// correspondences stand.
-  [[nodiscard]] Vector6 motion(int i) const;
+  [[nodiscard]] Vector6 motion(int i) const { return scale_.cwiseProduct(eigenvectors_.col(i)); }
   [[nodiscard]] double stiffness(int i) const { return eigenvalues_[i] * weight_; }
 
   /// What a perturbation has along direction \p i, m.
   [[nodiscard]] double part(const Vector6& perturbation, int i) const;
 
   /// By how much a perturbation moves the typical point, m.
-  [[nodiscard]] double length(const Vector6& perturbation) const;
+  [[nodiscard]] double length(const Vector6& perturbation) const { return perturbation.cwiseQuotient(scale_).norm(); }
 
   /// Covariance of the perturbation; weak directions get the variance of an eigenvalue near zero.
   /// \param variance of a residual of weight 1, m^2

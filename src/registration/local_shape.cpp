@@ -4,7 +4,6 @@
 #include "common/pi.h"
 #include "common/point_moments.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace pcl_floam {
@@ -60,24 +59,16 @@ LocalShape shapeOf(const PointTree& tree, const Eigen::Vector3f& point, const Ne
   if (!(axes.variance[2] > 0.0)) {
     return shape;
   }
-  if (isLine(axes)) {
-    shape.kind = ShapeKind::line;
-    shape.axis = axes.direction.col(2).cast<float>();
-  } else if (isPlane(axes)) {
-    shape.kind = ShapeKind::plane;
-    shape.axis = axes.direction.col(0).cast<float>();
+  const bool is_line = isLine(axes);
+  if (!is_line && !isPlane(axes)) {
+    return shape;
   }
-  const Eigen::Vector3d to_centre = moments.mean();
+  shape.kind = is_line ? ShapeKind::line : ShapeKind::plane;
+  shape.axis = axes.direction.col(is_line ? 2 : 0).cast<float>();
   const Eigen::Vector3d axis = shape.axis.cast<double>();
-  if (shape.kind == ShapeKind::plane) {
-    shape.to_surface = (axis * axis.dot(to_centre)).cast<float>();
-  } else if (shape.kind == ShapeKind::line) {
-    shape.to_surface = (to_centre - axis * axis.dot(to_centre)).cast<float>();
-  }
-  if (!shape.axis.allFinite()) {
-    shape = LocalShape();
-  }
-  return shape;
+  const Eigen::Vector3d along = axis * axis.dot(moments.mean());
+  shape.to_surface = (is_line ? Eigen::Vector3d(moments.mean() - along) : along).cast<float>();
+  return shape.axis.allFinite() ? shape : LocalShape();
 }
 
 /// Points spread evenly at distance s on a surface have k neighbours within s * sqrt(k / pi).
@@ -125,10 +116,8 @@ LocalShapes findLocalShapes(const PointTree& tree, int threads)
   }
   shapes.shape.resize(tree.size());
   std::vector<float> radii(tree.size());
-  const auto size = static_cast<std::ptrdiff_t>(tree.size());
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 256)
-  for (std::ptrdiff_t n = 0; n < size; ++n) {
-    const auto i = static_cast<std::size_t>(n);
+  for (std::size_t i = 0; i < tree.size(); ++i) {
     const Eigen::Vector3f& point = tree.points()[i];
     NearestPoints neighbors;
     tree.nearest(point, kNeighbors, neighbors);

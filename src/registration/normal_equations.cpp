@@ -4,7 +4,6 @@
 #include "registration/robust_kernel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace pcl_floam {
@@ -112,9 +111,8 @@ NormalEquations sumOfChunks(std::size_t count, std::size_t per_chunk, int thread
 {
   std::vector<NormalEquations> chunks((count + per_chunk - 1) / per_chunk);
 #pragma omp parallel for num_threads(threads) schedule(static)
-  for (std::ptrdiff_t n = 0; n < static_cast<std::ptrdiff_t>(chunks.size()); ++n) {
-    const std::size_t first = static_cast<std::size_t>(n) * per_chunk;
-    chunks[static_cast<std::size_t>(n)] = sumsOf(first, std::min(first + per_chunk, count));
+  for (std::size_t n = 0; n < chunks.size(); ++n) {
+    chunks[n] = sumsOf(n * per_chunk, std::min((n + 1) * per_chunk, count));
   }
   NormalEquations result;
   for (const NormalEquations& sums : chunks) {
@@ -132,11 +130,9 @@ NormalEquations buildNormalEquations(const RegistrationProblem& problem, const C
                      [&](std::size_t first, std::size_t last) {
                        ChunkSums sums;
                        for (std::size_t i = first; i < last; ++i) {
-                         if (i < edges) {
-                           sums.add(correspondences.edges[i], kernel, scales.edge);
-                         } else {
-                           sums.add(correspondences.planes[i - edges], kernel, scales.plane);
-                         }
+                         const bool is_edge = i < edges;
+                         sums.add(is_edge ? correspondences.edges[i] : correspondences.planes[i - edges], kernel,
+                                  is_edge ? scales.edge : scales.plane);
                        }
                        return sums.sums();
                      });

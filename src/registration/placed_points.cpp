@@ -57,15 +57,14 @@ PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& ter
 {
   std::array<Eigen::Vector3d, kMost> places;
   const ScanPoint* taken = term.points->data() + begin * stride;
-  sensor.undistorted(taken, stride, count, places.data());
   const SE3& pose = sensor.pose();
-  for (std::size_t i = 0; i < count; ++i) {
+  sensor.undistorted(taken, stride, count, [&](std::size_t i, const Eigen::Vector3d& place) {
     const ScanPoint& point = taken[i * stride];
     points[i].measured = &point;
-    points[i].arm = pose.rotation * places[i];  // seen from mid-sweep
+    points[i].arm = pose.rotation * place;  // seen from mid-sweep
     points[i].place = places[i] = pose.translation + points[i].arm;
     points[i].since_middle = sensor.sinceReference(static_cast<double>(point.time));
-  }
+  });
   if (found == nullptr) {
     term.target->find(places.data(), count, surfaces.data());
   } else {

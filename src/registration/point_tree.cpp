@@ -60,7 +60,7 @@ struct SomeNearest {
 
   void offer(float squared, int candidate)
   {
-    result.keys_[static_cast<std::size_t>(result.count_++)] = NearestPoints::keyOf(squared, candidate);
+    result.keys_[static_cast<std::size_t>(result.count_++)] = sortKey(squared, static_cast<std::uint32_t>(candidate));
     if (result.count_ == 3 * wanted) {
       keepWanted();
     }
@@ -104,11 +104,6 @@ PointTree::PointTree(const std::vector<Eigen::Vector3f>& points) : order_(points
   }
   nodes_.reserve(4 * points.size() / kLeafSize + 2);
   build(points, 0, static_cast<int>(points.size()));
-  layOut(points);
-}
-
-void PointTree::layOut(const std::vector<Eigen::Vector3f>& points)
-{
   points_.reserve(points.size());
   for (std::vector<float>& coordinates : coordinates_) {
     coordinates.assign(points.size() + kLeafSize, 0.0F);

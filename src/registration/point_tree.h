@@ -2,12 +2,13 @@
 /// Nearest neighbours among a fixed set of points, fast for queries that come in spatial order.
 #pragma once
 
+#include "common/sort_key.h"
+
 #include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 namespace pcl_floam {
@@ -29,29 +30,14 @@ public:
 
   [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] int index(int i) const { return static_cast<int>(keys_[static_cast<std::size_t>(i)] & 0xFFFFFFFFU); }
-  [[nodiscard]] float squaredDistance(int i) const
-  {
-    const auto bits = static_cast<std::uint32_t>(keys_[static_cast<std::size_t>(i)] >> 32U);
-    float squared;
-    std::memcpy(&squared, &bits, sizeof(squared));
-    return squared;
-  }
+  [[nodiscard]] float squaredDistance(int i) const { return valueOf(keys_[static_cast<std::size_t>(i)]); }
 
 private:
   friend class PointTree;
   friend struct SomeNearest;
 
-  /// A squared distance's bits above an index. As it is not negative, its bits are in its order, and comparing one
-  /// number is all that selecting needs.
-  static std::uint64_t keyOf(float squared, int index)
-  {
-    std::uint32_t bits;
-    std::memcpy(&bits, &squared, sizeof(bits));
-    return static_cast<std::uint64_t>(bits) << 32U | static_cast<std::uint32_t>(index);
-  }
-
   static constexpr std::size_t kRoom = 3 * kCapacity;  ///< what the search needs beyond the capacity
-  std::array<std::uint64_t, kRoom> keys_;
+  std::array<std::uint64_t, kRoom> keys_;              ///< of squared distances and indices
   int count_ = 0;
 };
 
@@ -96,7 +82,6 @@ private:
   };
 
   int build(const std::vector<Eigen::Vector3f>& points, int first, int last);
-  void layOut(const std::vector<Eigen::Vector3f>& points);
   template <typename Collector>
   void search(int node, const Eigen::Vector3f& query, float squared, Eigen::Vector3f& offset,
               Collector& collector) const;

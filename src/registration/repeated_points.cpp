@@ -2,7 +2,6 @@
 
 #include "common/hash.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 

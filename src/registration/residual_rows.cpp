@@ -3,7 +3,6 @@
 #include "common/multi_version.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 namespace pcl_floam {

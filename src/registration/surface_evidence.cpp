@@ -47,20 +47,15 @@ double SurfaceEvidence::of(const SurfaceTerm& scan, const SurfaceTerm& edges, st
   if (of_points != nullptr) {
     of_points->assign(scan.points->size(), 0.0F);
   }
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::ptrdiff_t part = 0; part < static_cast<std::ptrdiff_t>(parts.size()); ++part) {
-    const auto c = static_cast<std::size_t>(part);
-    const bool is_edges = c >= of_scan;
-    const PlacedPoints placed(sensor, is_edges ? edges : scan, is_edges ? c - of_scan : c, 1,
-                              is_edges ? found.data() : nullptr);
+  forEachChunk(sensor, scan, 1, edges, 1, found, threads, [&](std::size_t c, const PlacedPoints& placed) {
     for (std::size_t i = 0; i < placed.count; ++i) {
       const double evidence = evidenceOf(placed.points[i], placed.surfaces[i]);
       parts[c] += evidence;
-      if (of_points != nullptr && !is_edges) {
+      if (of_points != nullptr && c < of_scan) {
         (*of_points)[placed.begin + i] = static_cast<float>(evidence);
       }
     }
-  }
+  });
   return std::accumulate(parts.begin(), parts.end(), 0.0);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -108,33 +107,19 @@ void SurfaceSums::add(const SurfaceSums& other)
   robust_weight += other.robust_weight;
 }
 
-/// \param chunk takes the number of a chunk and its points; it may write what is of that number alone
-template <typename Chunk>
-void SurfaceResiduals::forEachChunk(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
-                                    std::size_t edge_stride, SurfaceRoom& room, const Chunk& chunk) const
-{
-  const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
-  const auto chunks = static_cast<std::ptrdiff_t>(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
-#pragma omp parallel for num_threads(threads) schedule(dynamic)
-  for (std::ptrdiff_t part = 0; part < chunks; ++part) {
-    const auto c = static_cast<std::size_t>(part);
-    chunk(c, c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
-                         : PlacedPoints(sensor, edges, c - of_scan, edge_stride, room.edges.data()));
-  }
-}
-
 SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                    std::size_t edge_stride, SurfaceRoom& room) const
 {
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
   parts.resize(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
-  forEachChunk(scan, stride, edges, edge_stride, room, [&](std::size_t c, const PlacedPoints& placed) {
-    parts[c] = SurfaceSums();
-    ChunkRows rows;
-    addAll(placed, rows, parts[c]);
-    rows.addTo(parts[c]);
-  });
+  forEachChunk(sensor, scan, stride, edges, edge_stride, room.edges, threads,
+               [&](std::size_t c, const PlacedPoints& placed) {
+                 parts[c] = SurfaceSums();
+                 ChunkRows rows;
+                 addAll(placed, rows, parts[c]);
+                 rows.addTo(parts[c]);
+               });
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(of_scan);
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
@@ -143,7 +128,7 @@ Pulls SurfaceResiduals::pullsAlong(const TriedMotions& motions, const SurfaceTer
                                    const SurfaceTerm& edges, SurfaceRoom& room) const
 {
   room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, 1));
-  forEachChunk(scan, stride, edges, 1, room, [&](std::size_t c, const PlacedPoints& placed) {
+  forEachChunk(sensor, scan, stride, edges, 1, room.edges, threads, [&](std::size_t c, const PlacedPoints& placed) {
     ChunkPulls rows{motions, {}};
     SurfaceSums unused;
     addAll(placed, rows, unused);

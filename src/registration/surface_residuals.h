@@ -68,9 +68,6 @@ private:
   void addLine(const PlacedPoint& point, const Surface& line, Rows& rows, SurfaceSums& sums) const;
   template <typename Rows>
   void addPoint(const PlacedPoint& point, const Surface& near, Rows& rows, SurfaceSums& sums) const;
-  template <typename Chunk>
-  void forEachChunk(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges, std::size_t edge_stride,
-                    SurfaceRoom& room, const Chunk& chunk) const;
   [[nodiscard]] Eigen::Vector3d turned(const std::array<float, 3>& run) const;
   [[nodiscard]] double weight(double squared, double variance, const Vector6& derivative, const PlacedPoint& p,
                               SurfaceSums& sums) const;

@@ -4,16 +4,12 @@ namespace pcl_floam {
 
 namespace {
 
-Matrix6 least()
-{
-  constexpr double kLeastVariance = 1e-12;
-  return kLeastVariance * Matrix6::Identity();
-}
+const Matrix6 kLeastCovariance = 1e-12 * Matrix6::Identity();
 
 /// Inverse of the pose's covariance.
 Matrix6 ofPose(const Matrix12& covariance)
 {
-  return inverseOf(Matrix6(covariance.topLeftCorner<6, 6>() + least()));
+  return inverseOf(Matrix6(covariance.topLeftCorner<6, 6>() + kLeastCovariance));
 }
 
 }  // namespace
@@ -23,7 +19,8 @@ Matrix12 SweepPrior::information() const
   const Matrix6 of_pose = ofPose(covariance);
   const Matrix6 common = covariance.topRightCorner<6, 6>();
   const Matrix6 gain = product(common.transpose(), of_pose);
-  const Matrix6 known = inverseOf(Matrix6(covariance.bottomRightCorner<6, 6>() - product(gain, common) + least()));
+  const Matrix6 known =
+      inverseOf(Matrix6(covariance.bottomRightCorner<6, 6>() - product(gain, common) + kLeastCovariance));
   const Matrix6 following = product(known, gain);
   const Matrix6 pose_alone = pose_counts ? of_pose : Matrix6(kNothingKnown * Matrix6::Identity());
   return inBlocks(product(gain.transpose(), following) + pose_alone, -following.transpose(), -following, known);

@@ -15,7 +15,7 @@ inline Eigen::Vector3d placeOf(const SweepTrajectory& sensor, const Eigen::Vecto
     double x, y, z, time;
   } seen{point.x(), point.y(), point.z(), time};
   Eigen::Vector3d place;
-  sensor.undistorted(&seen, 1, 1, &place);
+  sensor.undistorted(&seen, 1, 1, [&place](std::size_t, const Eigen::Vector3d& seen_at) { place = seen_at; });
   return sensor.pose() * place;
 }
 

@@ -12,6 +12,8 @@
 
 #include <pcl/filters/filter.h>
 
+#include <stdexcept>
+
 namespace pcl_floam {
 
 /// Re-expresses every point of a sweep at one instant of it, given the motion over the sweep (Eq. 3, 4 and 12).
@@ -41,13 +43,25 @@ public:
 
   /// The motion over the sweep as a twist xi = log(start_T_end): metres, then radians. Default: none.
   /// \throws std::invalid_argument if it is not finite.
-  void setTwist(const Vector6& twist);
+  void setTwist(const Vector6& twist)
+  {
+    if (!twist.allFinite()) {
+      throw std::invalid_argument("motion compensation: the motion over the sweep is not finite");
+    }
+    twist_ = twist;
+  }
   [[nodiscard]] const Vector6& getTwist() const { return twist_; }
 
   /// The change of the motion over the sweep. The twist is then the velocity at the sweep's middle, as the odometry's
   /// reports have both: `report.registration.sweep_twist` and `sweep_acceleration`. Default: none.
   /// \throws std::invalid_argument if it is not finite.
-  void setAcceleration(const Vector6& acceleration);
+  void setAcceleration(const Vector6& acceleration)
+  {
+    if (!acceleration.allFinite()) {
+      throw std::invalid_argument("motion compensation: the acceleration over the sweep is not finite");
+    }
+    acceleration_ = acceleration;
+  }
   [[nodiscard]] const Vector6& getAcceleration() const { return acceleration_; }
 
   /// The motion over the sweep as the sensor's pose at its end, seen from its pose at the start.

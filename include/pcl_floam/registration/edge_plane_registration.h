@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pcl_floam/common/core/moved_cloud.h>
+#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/filters/core/feature_extractor.h>
 #include <pcl_floam/filters/core/sensor_model.h>
 #include <pcl_floam/map/keyframe_voxel_map.h>
@@ -18,6 +19,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 namespace pcl_floam {
@@ -113,22 +115,43 @@ public:
 
   /// Settings of the features that are extracted from clouds with scan lines.
   /// \throws std::invalid_argument if a parameter is out of its range.
-  void setFeatureParameters(const FeatureParameters& parameters);
+  void setFeatureParameters(const FeatureParameters& parameters)
+  {
+    validate(parameters);
+    feature_parameters_ = parameters;
+    prepared_target_.reset();
+  }
   [[nodiscard]] const FeatureParameters& getFeatureParameters() const { return feature_parameters_; }
 
   /// The beams of the sensor that took both clouds. Default: unknown.
-  void setSensor(const SensorModel& sensor);
+  void setSensor(const SensorModel& sensor)
+  {
+    sensor_ = sensor;
+    prepared_target_.reset();
+  }
   [[nodiscard]] const SensorModel& getSensor() const { return sensor_; }
 
   /// Where that sensor is in the clouds' frame, if that is not its own but a vehicle's: scan lines, and with them
   /// features, go by where points were measured from. The pose that is found is that of the clouds' frames.
   /// \throws std::invalid_argument for a pose that is not finite
-  void setSensorPose(const SE3& frame_T_sensor);
+  void setSensorPose(const SE3& frame_T_sensor)
+  {
+    sensor_pose_.set(frame_T_sensor);
+    prepared_target_.reset();
+  }
   [[nodiscard]] const SE3& getSensorPose() const { return sensor_pose_.get(); }
 
   /// Features to register in place of those of the source cloud (which is still the one that align() transforms).
-  void setSourceFeatures(const FeatureSet& features);
-  void clearSourceFeatures();
+  void setSourceFeatures(const FeatureSet& features)
+  {
+    forgetResult();
+    source_features_ = features;
+  }
+  void clearSourceFeatures()
+  {
+    forgetResult();
+    source_features_.reset();
+  }
   /// Null if none are set.
   [[nodiscard]] const FeatureSet* getSourceFeatures() const { return source_features_ ? &*source_features_ : nullptr; }
 
@@ -139,8 +162,19 @@ public:
 
   /// Something else that is known of the pose (`target_T_source`), beside the clouds; asked in every iteration.
   /// \throws std::invalid_argument if it is null
-  void addFactor(const PoseFactor::ConstPtr& factor);
-  void clearFactors();
+  void addFactor(const PoseFactor::ConstPtr& factor)
+  {
+    if (!factor) {
+      throw std::invalid_argument("registration: the factor is null");
+    }
+    forgetResult();
+    factors_.push_back(factor);
+  }
+  void clearFactors()
+  {
+    forgetResult();
+    factors_.clear();
+  }
   [[nodiscard]] const std::vector<PoseFactor::ConstPtr>& getFactors() const { return factors_; }
 
   /// As ICP's: an empty cloud is refused with an error message, and the one before stays.
@@ -148,13 +182,13 @@ public:
   /// See setInputSource(). The cloud is new each time, also under the same pointer.
   void setInputTarget(const PointCloudTargetConstPtr& cloud) override;
 
-  void setIndices(const pcl::IndicesPtr& indices) override;
-  void setIndices(const pcl::IndicesConstPtr& indices) override;
-  void setIndices(const pcl::PointIndices::ConstPtr& indices) override;
+  void setIndices(const pcl::IndicesPtr& indices) override { takeIndices(indices); }
+  void setIndices(const pcl::IndicesConstPtr& indices) override { takeIndices(indices); }
+  void setIndices(const pcl::PointIndices::ConstPtr& indices) override { takeIndices(indices); }
   void setIndices(std::size_t row_start, std::size_t column_start, std::size_t rows, std::size_t columns) override;
 
   /// Threads for the search of correspondences, 1 or more; the result does not depend on it. 0 uses all processors.
-  void setNumberOfThreads(unsigned int threads = 0);
+  void setNumberOfThreads(unsigned int threads = 0) { threads_ = threadCount(threads); }
   [[nodiscard]] int getNumberOfThreads() const { return threads_; }
 
   /// What came of the last align().
@@ -171,7 +205,19 @@ private:
     std::unique_ptr<PreparedCloud> thinned;      ///< of a cloud with scan lines
   };
 
-  void forgetResult();
+  /// What the last align() found does not belong to other input.
+  void forgetResult()
+  {
+    this->converged_ = false;
+    report_ = RegistrationReport();
+  }
+  template <typename Indices>
+  void takeIndices(const Indices& indices)
+  {
+    given_indices_.reset();
+    Base::setIndices(indices);
+    checkIndices();
+  }
   void takeTarget(const PointCloudTargetConstPtr& cloud);
   void checkIndices();
   [[nodiscard]] std::vector<std::uint8_t> selectableSource() const;

@@ -6,27 +6,7 @@
 #include <pcl/common/point_tests.h>
 #include <pcl/point_types.h>
 
-#include <stdexcept>
-
 namespace pcl_floam {
-
-template <typename PointT>
-void MotionCompensation<PointT>::setTwist(const Vector6& twist)
-{
-  if (!twist.allFinite()) {
-    throw std::invalid_argument("motion compensation: the motion over the sweep is not finite");
-  }
-  twist_ = twist;
-}
-
-template <typename PointT>
-void MotionCompensation<PointT>::setAcceleration(const Vector6& acceleration)
-{
-  if (!acceleration.allFinite()) {
-    throw std::invalid_argument("motion compensation: the acceleration over the sweep is not finite");
-  }
-  acceleration_ = acceleration;
-}
 
 template <typename PointT>
 void MotionCompensation<PointT>::applyFilter(PointCloud& output)

@@ -13,7 +13,12 @@ namespace pcl_floam {
 struct KeyframePolicy {
   double translation = 0.5;  ///< m, >= 0; 0 makes every scan a keyframe. Reasonable: 0.1 (indoors) to 2
 
-  [[nodiscard]] bool isKeyframe(const SE3& last_keyframe, const SE3& pose) const;
+  [[nodiscard]] bool isKeyframe(const SE3& last_keyframe, const SE3& pose) const
+  {
+    constexpr double kArm = 5.0;  // m: how far away what is seen typically is, which turns with the sensor
+    const SE3 moved = last_keyframe.inverse() * pose;
+    return moved.translation.norm() >= translation || kArm * rotationAngle(moved.rotation) >= translation;
+  }
 };
 
 /// A rule of one's own: whether a scan becomes a keyframe. Both poses are `world_T_sensor`s, up to a common motion.

@@ -1,11 +1,9 @@
 // EdgePlaneRegistration: settings and input.
 #pragma once
 
-#include <pcl_floam/common/core/thread_count.h>
 #include <pcl_floam/map/core/finite_search.h>
 
 #include <algorithm>
-#include <stdexcept>
 #include <typeinfo>
 
 namespace pcl_floam {
@@ -20,67 +18,6 @@ EdgePlaneRegistration<PointSource, PointTarget, Scalar>::EdgePlaneRegistration()
       this->nr_iterations_, this->transformation_, *this->correspondences_);
   own_estimation_ = this->transformation_estimation_;
   own_correspondences_ = this->correspondence_estimation_;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setFeatureParameters(const FeatureParameters& parameters)
-{
-  validate(parameters);
-  feature_parameters_ = parameters;
-  prepared_target_.reset();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensor(const SensorModel& sensor)
-{
-  sensor_ = sensor;
-  prepared_target_.reset();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSensorPose(const SE3& frame_T_sensor)
-{
-  sensor_pose_.set(frame_T_sensor);
-  prepared_target_.reset();
-}
-
-/// What the last align() found does not belong to other input.
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::forgetResult()
-{
-  this->converged_ = false;
-  report_ = RegistrationReport();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setSourceFeatures(const FeatureSet& features)
-{
-  forgetResult();
-  source_features_ = features;
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearSourceFeatures()
-{
-  forgetResult();
-  source_features_.reset();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::addFactor(const PoseFactor::ConstPtr& factor)
-{
-  if (!factor) {
-    throw std::invalid_argument("registration: the factor is null");
-  }
-  forgetResult();
-  factors_.push_back(factor);
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::clearFactors()
-{
-  forgetResult();
-  factors_.clear();
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
@@ -143,30 +80,6 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setInputTargetMap(
 }
 
 template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::IndicesPtr& indices)
-{
-  given_indices_.reset();
-  Base::setIndices(indices);
-  checkIndices();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::IndicesConstPtr& indices)
-{
-  given_indices_.reset();
-  Base::setIndices(indices);
-  checkIndices();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(const pcl::PointIndices::ConstPtr& indices)
-{
-  given_indices_.reset();
-  Base::setIndices(indices);
-  checkIndices();
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
 void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setIndices(std::size_t row_start,
                                                                          std::size_t column_start, std::size_t rows,
                                                                          std::size_t columns)
@@ -199,12 +112,6 @@ void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::checkIndices()
     this->indices_ = pcl::make_shared<pcl::Indices>();
     std::remove_copy_if(given_indices_->begin(), given_indices_->end(), std::back_inserter(*this->indices_), outside);
   }
-}
-
-template <typename PointSource, typename PointTarget, typename Scalar>
-void EdgePlaneRegistration<PointSource, PointTarget, Scalar>::setNumberOfThreads(unsigned int threads)
-{
-  threads_ = threadCount(threads);
 }
 
 }  // namespace pcl_floam
