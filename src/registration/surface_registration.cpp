@@ -76,18 +76,22 @@ private:
   /// known of that: what is expected would be no more than what the pattern has told before.
   void findPatterns()
   {
-    by_pattern_ = motionsToldByPattern(
-        propagated(strong_.transpose(), net_) / kResidualsBesideMotion, problem_.locked,
-        [this](const TriedMotions& motions, const Vector6& moved) { return pullsWhenMoved(motions, moved); });
+    const auto pulls = [this](const TriedMotions& motions, const Vector6& moved) {
+      SweepEstimate there = at_;
+      there.move(moved);
+      return residualsAt(there, moved * moved.transpose())
+          .pullsAlong(motions, problem_.scan, first_stride_, problem_.edges, room_);
+    };
+    const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
+    by_pattern_ = motionsToldByPattern(information, problem_.locked, pulls);
     left_to_prior_ = problem_.prior.has_hint ? by_pattern_ : left_to_prior_;
   }
 
   void weighEvidence(SurfaceRegistration& result)
   {
     const SurfaceEvidence evidence{placing_.trajectory(at_), problem_.threads};
-    const bool is_of_points = problem_.evidence == Evidence::of_points;
-    result.evidence =
-        evidence.of(problem_.scan, problem_.edges, room_.edges, is_of_points ? &result.point_evidence : nullptr);
+    std::vector<float>* of_points = problem_.evidence == Evidence::of_points ? &result.point_evidence : nullptr;
+    result.evidence = evidence.of(problem_.scan, problem_.edges, room_.edges, of_points);
   }
 
   /// \param look of what the guess may be off, so far: halved with each
@@ -118,8 +122,7 @@ private:
   {
     at_.take(step);
     const Vector6 motion = step.head<6>();
-    const Vector6 seen = sums.equations.information * motion;
-    return motion.dot(seen) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
+    return motion.dot(sums.equations.information * motion) < kSmallStep * kSmallStep * kResidualsPerIndependentOne;
   }
 
   void conclude(SurfaceRegistration& result, const SurfaceSums& sums)
@@ -227,14 +230,6 @@ private:
         .sumsOf(problem_.scan, stride, problem_.edges, edge_stride, room_);
   }
 
-  [[nodiscard]] Pulls pullsWhenMoved(const TriedMotions& motions, const Vector6& moved)
-  {
-    SweepEstimate there = at_;
-    there.move(moved);
-    return residualsAt(there, moved * moved.transpose())
-        .pullsAlong(motions, problem_.scan, first_stride_, problem_.edges, room_);
-  }
-
   struct Equations {
     Matrix12 information;
     Vector12 gradient;
@@ -244,7 +239,6 @@ private:
   [[nodiscard]] Equations equationsOf(const NormalEquations& e) const
   {
     const auto cleaned = [&](const Matrix6& m) { return propagated(strong_.transpose(), m); };
-    const Vector12 off = problem_.prior.offset(at_.pose, at_.velocity);
     Equations equations;
     equations.information << cleaned(e.information), cleaned(e.coupling), cleaned(e.coupling),
         cleaned(e.twist_information);
@@ -252,7 +246,7 @@ private:
     equations.information += prior_;
     equations.gradient << strong_.transpose() * e.gradient, strong_.transpose() * e.twist_gradient;
     equations.gradient /= kResidualsBesideMotion;
-    equations.gradient += prior_ * off;
+    equations.gradient += prior_ * problem_.prior.offset(at_.pose, at_.velocity);
     const PoseEquations besides = this->besides();
     equations.information.topLeftCorner<6, 6>() += besides.information;
     equations.gradient.head<6>() += besides.gradient;
