@@ -1,5 +1,5 @@
 /// \file hash.h
-/// Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4) for tables whose sizes are powers of two.
+/// A table of values by 64-bit keys: Fibonacci hashing (Knuth, The Art of Computer Programming, 6.4), open addressing.
 #pragma once
 
 #include "common/prefetch.h"
@@ -71,8 +71,9 @@ public:
   /// Keeps room for as many again; smaller tables stay in the cache.
   void clear()
   {
-    std::size_t slots = 1024;
-    for (shift_ = 64 - 10; slots < 3 * used_; slots *= 2) {
+    constexpr unsigned kLeastBits = 10;  // of the table's size
+    std::size_t slots = std::size_t{1} << kLeastBits;
+    for (shift_ = 64 - kLeastBits; slots < 3 * used_; slots *= 2) {
       --shift_;
     }
     slots_.assign(slots, {});

@@ -36,10 +36,11 @@ float groupByElevation(const CloudView& cloud, const std::vector<float>& elevati
              : static_cast<float>(grouping.onLines()) / static_cast<float>(grouping.measurable());
 }
 
-/// Number of points per elevation bin.
 constexpr float kHalfPi = 1.5707964F;
+/// rad: finer than scan lines lie apart.
 constexpr float kBin = static_cast<float>(0.05 * kPi / 180.0);
 
+/// Number of points per elevation bin.
 std::vector<int> elevationHistogram(const CloudView& cloud)
 {
   std::vector<int> histogram(static_cast<std::size_t>(2.0F * kHalfPi / kBin) + 2, 0);

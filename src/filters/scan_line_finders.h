@@ -19,7 +19,7 @@ inline bool isMeasurable(const CloudView& cloud, std::size_t i)
   return sum > 0.0F && std::isfinite(sum);
 }
 
-/// Angle above the sensor's xy plane, rad.
+/// The size of the cloud if there is none.
 inline std::size_t firstMeasurable(const CloudView& cloud)
 {
   std::size_t i = 0;
@@ -29,6 +29,7 @@ inline std::size_t firstMeasurable(const CloudView& cloud)
   return i;
 }
 
+/// Angle above the sensor's xy plane, rad.
 inline float elevationOf(const CloudView& cloud, std::size_t i)
 {
   return std::atan2(cloud.z(i), std::hypot(cloud.x(i), cloud.y(i)));

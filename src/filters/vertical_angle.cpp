@@ -48,9 +48,12 @@ void turnUp(double sine, double cosine, std::size_t count, float* __restrict x, 
 
 void correctVerticalAngle(double degrees, FeatureSet& features)
 {
+  if (degrees == 0.0) {
+    return;
+  }
   const Turn turn(degrees);
   for (std::vector<Feature>* kind : {&features.edges, &features.planes}) {
-    for (std::size_t i = 0; i < kind->size() && degrees != 0.0; ++i) {
+    for (std::size_t i = 0; i < kind->size(); ++i) {
       turnUp(turn.sine, turn.cosine, (*kind)[i].x, (*kind)[i].y, (*kind)[i].z);
     }
   }

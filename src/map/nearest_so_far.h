@@ -71,7 +71,6 @@ private:
   static constexpr std::uint32_t kPointMask = (1U << kPointBits) - 1;
   static constexpr std::size_t kMostEntered = 64;
 
-  /// The bits of floats that are not negative sort as the floats do.
   static std::uint32_t numberOf(std::uint64_t key) { return static_cast<std::uint32_t>(key); }
 
   /// Of many blocks, keeps those of the nearest points.

@@ -1,5 +1,5 @@
 /// \file voxel_table.h
-/// Voxels of several sizes by their integer coordinates: 64-bit keys, open addressing.
+/// Voxels of several sizes by their integer coordinates.
 #pragma once
 
 #include "common/hash.h"

@@ -65,8 +65,8 @@ double ScanClock::tick(std::optional<double> stamp)
   last_stamp_ = stamp;
   const bool clock_was_set = !std::isfinite(elapsed) || (usual > 0.0 && std::abs(elapsed) > kClockWasSet * usual);
   if (elapsed > 0.0 && std::isfinite(elapsed)) {
-    recent_[remembered_++ % kRemembered] =
-        elapsed / (1.0 + counted);  // in any case: the period may have been taken from stamps that were wrong
+    // In any case: the period may have been taken from stamps that were wrong.
+    recent_[remembered_++ % kRemembered] = elapsed / (1.0 + counted);
   }
   if (!clock_was_set && elapsed <= kNoTime * usual) {
     standing_ = usual > 0.0 ? stood + 1 : 2;

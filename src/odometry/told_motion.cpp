@@ -28,8 +28,10 @@ Eigen::Matrix3d toldPosition(const Matrix6& told, const Eigen::Matrix3d& rotatio
   if (!hint) {
     return told.topLeftCorner<3, 3>();
   }
+  constexpr double kLeast = 1e-12;  // m^2 and rad^2: what is locked is known, whatever a hint says
   const Matrix6 hinted = propagated(turnOf(rotation), hint->covariance);
-  const Matrix6 together = inverseOf(Matrix6(inverseOf(told) + inverseOf(hinted)));
+  const Matrix6 by_scan = inverseOf(Matrix6(told + kLeast * Matrix6::Identity()));
+  const Matrix6 together = inverseOf(Matrix6(by_scan + inverseOf(hinted)));
   return together.topLeftCorner<3, 3>();
 }
 

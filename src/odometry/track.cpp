@@ -1,5 +1,7 @@
 #include "odometry/track.h"
 
+#include "common/perturbation.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -78,6 +80,8 @@ SurfaceRegistration Track::step(const Sweep& sweep, Rivals rivals)
   SurfaceRegistration registration = registerPredicted(sweep, rivals);
   if (registration.report.hasConverged()) {
     if (rivals != Rivals::none) {
+      // What was long ago counts less, since a moving sensor's map says little at first, and a resting one's all it
+      // ever will.
       evidence_ = kKept * evidence_ + likelihoodOf(registration, motion_.pose(), motion_.poseCovariance());
     }
     update(sweep, registration, rivals);
@@ -117,6 +121,10 @@ void Track::predict(const Sweep& sweep)
   velocity_before_ = motion_.velocity();
   periods_between_ = std::max(1.0, sweep.periods);  // over less, a difference of velocities is no acceleration
   motion_.predict(sweep.periods, sweep.hint, sweep.periods_error);
+  hinted_.setZero();
+  if (sweep.hint) {
+    hinted_ = inverseOf(propagated(turnOf(motion_.pose().rotation), sweep.hint->covariance));
+  }
   if (is_placed_) {
     settle(sweep, pose_.middle, kGiven);
   }
@@ -149,6 +157,7 @@ void Track::settle(const Sweep& sweep, const SE3& guess, const Doubt& doubt)
   const Place place = settledPlace(problemFor(sweep), guess, doubt);
   motion_ = MotionEstimate();
   motion_.place(place.pose, covarianceOf(place.doubt));
+  hinted_.setZero();
   periods_between_ = 0.0;
 }
 
@@ -177,7 +186,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   problem.prior.velocity_before = velocity_before_;
   problem.prior.periods_between = periods_between_;
   problem.prior.covariance = motion_.covariance();
-  problem.prior.has_hint = sweep.hint.has_value();
+  problem.prior.hinted = hinted_;
   problem.prior.fraction = fractionOf(sweep);
   problem.guess_covariance = motion_.poseCovariance();
   problem.placement = placementOf(settings_.compensation);
@@ -188,8 +197,7 @@ SurfaceProblem Track::problemFor(const Sweep& sweep) const
   return problem;
 }
 
-/// What a hypothesis is worth, by the last sweeps. What was long ago counts less, since a moving sensor's map says
-/// little at first, and a resting one's all it ever will.
+/// Distortion Compensation Update (Eq. 12).
 void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, Rivals rivals)
 {
   const SE3 last = pose_.middle;

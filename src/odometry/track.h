@@ -115,7 +115,8 @@ private:
   double periods_between_ = 0.0;  ///< since that velocity; 0: none is known
   SweepPose pose_;
   SE3 keyframe_;
-  bool is_placed_ = false;  ///< by somebody, roughly
+  bool is_placed_ = false;            ///< by somebody, roughly
+  Matrix6 hinted_ = Matrix6::Zero();  ///< information: what a hint tells of the motion to where the sensor is expected
   double evidence_ = 0.0;
 };
 

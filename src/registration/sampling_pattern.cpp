@@ -77,24 +77,38 @@ Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom&
   return motions;
 }
 
-Matrix6 apartFrom(const Motions& motions, const Matrix6& told, const Matrix6& information)
+Motions knownAmong(const Motions& motions, const Matrix6& information)
 {
-  Matrix6 apart = told;
+  Motions known(6, 0);
+  for (Eigen::Index i = 0; i < motions.cols(); ++i) {
+    const Vector6 motion = motions.col(i);
+    if (motion.dot(information * motion) * kWay * kWay > 1.0) {
+      known.conservativeResize(6, known.cols() + 1);
+      known.rightCols<1>() = motion;
+    }
+  }
+  return known;
+}
+
+Matrix6 apartFrom(const Motions& motions, const Matrix6& onto, const Matrix6& information)
+{
+  constexpr double kRounding = 1e-9;  // of the information along a motion that is told no more
+  Matrix6 apart = onto;
   for (Eigen::Index i = 0; i < motions.cols(); ++i) {
     const Vector6 motion = motions.col(i);
     const Vector6 along = propagated(apart.transpose(), information) * motion;
     const double stiffness = motion.dot(along);
-    if (stiffness > 0.0) {
+    if (stiffness > kRounding * motion.dot(information * motion)) {
       apart -= apart * motion * along.transpose() / stiffness;
     }
   }
   return apart;
 }
 
-void nameWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
-              std::vector<WeakDirection>& directions)
+void addToWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
+               std::vector<WeakDirection>& directions)
 {
-  constexpr double kUnknown = 1.0;  // m, one standard deviation
+  constexpr double kUnknown = 1.0;  // m: one standard deviation of what is as good as not known
   for (Eigen::Index k = 0; k < motions.cols(); ++k) {
     const Vector6 motion = motions.col(k);
     if (motion.dot(besides * motion) * kUnknown * kUnknown < 1.0) {

@@ -26,24 +26,27 @@ using TriedMotions = Eigen::Matrix<double, 6, 3, Eigen::DontAlign>;
 using PullsWhenMoved = std::function<Pulls(const TriedMotions& motions, const Vector6& moved)>;
 
 /// A sensor's rings lie on the rings that it has drawn into the map, and hold the pose where it was, each with a small
-/// and definite error. So the pose is moved along the directions of which is known least, and its pulls along all of
-/// them are looked at: how much of the growth that is promised is there, when the pose has gone some way to either
-/// side. What is drawn to the nearest part of a sampling pattern is drawn to the next part after half of the pattern's
-/// spacing: if the way is longer than that, its pull comes back nowhere, however many points have it. Where two
-/// directions are known alike, neither need be the one that only a pattern tells.
-/// \param information of independent residuals; motions translate (m) before they turn (rad)
-/// \return by a metre
+/// and definite error. So the pose is displaced, without a turn, along the axes of what is not known well of its
+/// position, and its pulls along all of them are looked at: how much of the growth that is promised is there, when the
+/// pose has gone some way to either side. What is drawn to the nearest part of a sampling pattern is drawn to the next
+/// part after half of the pattern's spacing: if the way is longer than that, its pull comes back nowhere, however many
+/// points have it. Where two directions are known alike, neither need be the one that only a pattern tells. \param
+/// information of independent residuals; motions translate (m) before they turn (rad) \return by a metre
 [[nodiscard]] Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom& locked,
                                            const PullsWhenMoved& pulls);
 
-/// Projects on what residuals tell of all other motions, whatever those have been.
-/// \param told projects on what they tell already
-[[nodiscard]] Matrix6 apartFrom(const Motions& motions, const Matrix6& told, const Matrix6& information);
+/// Those of some motions by a metre that somebody knows better than the way by which patterns are looked for is long.
+[[nodiscard]] Motions knownAmong(const Motions& motions, const Matrix6& information);
+
+/// A projection on what residuals tell of all other motions, whatever those have been.
+/// \param onto        projects on what they tell already
+/// \param information of the residuals, before either projection
+[[nodiscard]] Matrix6 apartFrom(const Motions& motions, const Matrix6& onto, const Matrix6& information);
 
 /// Adds motions to the weak directions, at right angles to those that are there, but for what else is known.
 /// \param besides information of the pose
 /// \param units   of displacement, per unit of each component
-void nameWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
-              std::vector<WeakDirection>& directions);
+void addToWeak(const Motions& motions, const Matrix6& besides, const Vector6& units,
+               std::vector<WeakDirection>& directions);
 
 }  // namespace pcl_floam

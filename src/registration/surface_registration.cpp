@@ -72,8 +72,8 @@ public:
   }
 
 private:
-  /// What only they tell is left to a hint, if there is one. Otherwise the pose stays where it is, though nothing is
-  /// known of that: what is expected would be no more than what the pattern has told before.
+  /// What only patterns tell is left to a hint, if one tells of it. Otherwise the pose stays where it is, though
+  /// nothing is known of that: what is expected would be no more than what the pattern has told before.
   void findPatterns()
   {
     const auto pulls = [this](const TriedMotions& motions, const Vector6& moved) {
@@ -84,7 +84,7 @@ private:
     };
     const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
     by_pattern_ = motionsToldByPattern(information, problem_.locked, pulls);
-    left_to_prior_ = problem_.prior.has_hint ? by_pattern_ : left_to_prior_;
+    left_to_prior_ = knownAmong(by_pattern_, problem_.prior.hinted);
   }
 
   void weighEvidence(SurfaceRegistration& result)
@@ -142,7 +142,7 @@ private:
     const Matrix6 besides = this->besides().information;
     const Matrix6 told = propagated(apartFrom(by_pattern_, strong_, net_).transpose(), net_) / kResidualsBesideMotion;
     result.told = covarianceBy(told + besides);
-    nameWeak(by_pattern_, besides, commonUnits(sums.equations), report.weak_directions);
+    addToWeak(by_pattern_, besides, commonUnits(sums.equations), report.weak_directions);
     report.cost = sums.equations.cost;
     report.residual_rms =
         sums.robust_weight > 0.0 ? std::sqrt(sums.equations.weighted_squares / sums.robust_weight) : 0.0;

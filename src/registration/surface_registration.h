@@ -52,7 +52,7 @@ struct SurfaceProblem {
   bool is_rival = false;
   /// The pose is moved aside to see what holds it: structure or, as it seems, the sensor's own sampling pattern.
   bool looks_for_patterns = false;
-  int max_iterations = 12;
+  int max_iterations = 12;  ///< and as many again where a pattern is left to a hint
   int threads = 1;
   struct SurfaceRoom* room = nullptr;  ///< memory of the last one, of none that runs; nullptr: there is none
 };

@@ -4,12 +4,17 @@ namespace pcl_floam {
 
 namespace {
 
-const Matrix6 kLeastCovariance = 1e-12 * Matrix6::Identity();
+/// In any unit: what is known for certain has an inverse, too.
+Matrix6 leastCovariance()
+{
+  constexpr double kLeastVariance = 1e-12;
+  return kLeastVariance * Matrix6::Identity();
+}
 
 /// Inverse of the pose's covariance.
 Matrix6 ofPose(const Matrix12& covariance)
 {
-  return inverseOf(Matrix6(covariance.topLeftCorner<6, 6>() + kLeastCovariance));
+  return inverseOf(Matrix6(covariance.topLeftCorner<6, 6>() + leastCovariance()));
 }
 
 }  // namespace
@@ -20,7 +25,7 @@ Matrix12 SweepPrior::information() const
   const Matrix6 common = covariance.topRightCorner<6, 6>();
   const Matrix6 gain = product(common.transpose(), of_pose);
   const Matrix6 known =
-      inverseOf(Matrix6(covariance.bottomRightCorner<6, 6>() - product(gain, common) + kLeastCovariance));
+      inverseOf(Matrix6(covariance.bottomRightCorner<6, 6>() - product(gain, common) + leastCovariance()));
   const Matrix6 following = product(known, gain);
   const Matrix6 pose_alone = pose_counts ? of_pose : Matrix6(kNothingKnown * Matrix6::Identity());
   return inBlocks(product(gain.transpose(), following) + pose_alone, -following.transpose(), -following, known);

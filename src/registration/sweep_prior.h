@@ -15,9 +15,9 @@ struct SweepPrior {
   /// Of pose and velocity: perturbations on the left (translation m, rotation rad), about the sensor's position, the
   /// target's axes.
   Matrix12 covariance = Matrix12::Identity();
-  bool pose_counts = true;  ///< as a measurement of that covariance; else it is where to begin
-  bool has_hint = false;    ///< others than the scans have told of the motion
-  double fraction = 0.0;    ///< duration of the sweep in periods
+  bool pose_counts = true;           ///< as a measurement of that covariance; else it is where to begin
+  double fraction = 0.0;             ///< duration of the sweep in periods
+  Matrix6 hinted = Matrix6::Zero();  ///< information: what others than the scans have told of the motion to the pose
 
   /// H of pose and velocity: by how much the velocity follows the pose, and how well it is known then; and, if it
   /// counts, how well the pose is known.

@@ -170,6 +170,8 @@ TEST(ToldMotion, NothingHasToTellOfWhatIsLocked)
   motion.take(position(0.0), 1.0);
   EXPECT_TRUE(motion.isTold());
   EXPECT_TRUE(std::isfinite(motion.deviation()));
+  const Eigen::Matrix3d hinted = toldPosition(told(0.0), Eigen::Matrix3d::Identity(), hintOf(kNothing));
+  EXPECT_LT(std::sqrt(hinted(0, 0)), 1e-3) << "a hint does not know it, but need not";
 }
 
 }  // namespace

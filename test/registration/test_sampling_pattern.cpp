@@ -170,6 +170,27 @@ TEST(SamplingPattern, IsNotLookedForInWhatIsLockedOrKnownWell)
   EXPECT_EQ(motionsToldByPattern(information, {true, false, false, false, false, false}, nothing).cols(), 0);
 }
 
+/// However it was looked for, and whatever was projected out before: nothing is taken out twice.
+TEST(SamplingPattern, IsTakenOutOnce)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 300; ++i) {
+    Matrix6 root;
+    for (Eigen::Index k = 0; k < root.size(); ++k) {
+      root.data()[k] = normal(random);
+    }
+    const Matrix6 information = root * root.transpose();
+    Motions motions = Motions::Zero(6, 1 + i % 3);
+    motions.topRows(motions.cols()).setIdentity();
+    Matrix6 onto = Matrix6::Identity();
+    onto(0, 0) = i % 2 == 0 ? 1.0 : 0.0;  // told by nothing
+    const Matrix6 once = apartFrom(motions, onto, information);
+    EXPECT_LT((apartFrom(motions, once, information) - once).norm(), 1e-6 * once.norm()) << i;
+    EXPECT_LT((once * motions).norm(), 1e-6 * once.norm()) << i;
+  }
+}
+
 /// Posts pull the pose to the nearest of them, whatever is expected; unless others than the scans have told of the
 /// motion, and it is only posts.
 TEST(SamplingPattern, YieldsToAHint)
@@ -177,12 +198,13 @@ TEST(SamplingPattern, YieldsToAHint)
   constexpr double kHinted = 0.015;  // m along the way, where no post is
   const Posts target(kNear);
   const std::vector<ScanPoint> points = scanOf(kNear);
-  for (const bool has_hint : {false, true}) {
+  for (const double hint : {0.0, 0.01, 100.0}) {  // m, one standard deviation; 0: there is none
+    const bool has_hint = hint > 0.0 && hint < 1.0;
     SurfaceProblem problem = test::problemOf(points, target);
     problem.looks_for_patterns = true;
     problem.prior.pose.translation.x() = kHinted;
     problem.prior.pose_counts = true;
-    problem.prior.has_hint = has_hint;
+    problem.prior.hinted = (hint > 0.0 ? 1.0 / (hint * hint) : 0.0) * Matrix6::Identity();
     const SurfaceRegistration found = registerSurfaces(problem);
     ASSERT_TRUE(found.report.hasConverged());
     EXPECT_NEAR(found.report.target_T_source.translation.x(), has_hint ? kHinted : 0.0, 3e-3);
