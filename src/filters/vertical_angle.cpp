@@ -53,8 +53,8 @@ void correctVerticalAngle(double degrees, FeatureSet& features)
   }
   const Turn turn(degrees);
   for (std::vector<Feature>* kind : {&features.edges, &features.planes}) {
-    for (std::size_t i = 0; i < kind->size(); ++i) {
-      turnUp(turn.sine, turn.cosine, (*kind)[i].x, (*kind)[i].y, (*kind)[i].z);
+    for (Feature& feature : *kind) {
+      turnUp(turn.sine, turn.cosine, feature.x, feature.y, feature.z);
     }
   }
 }

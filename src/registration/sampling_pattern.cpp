@@ -66,7 +66,7 @@ Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom&
   known.diagonal().array() += kNothingKnown;
   const Motions tried = motionsToTry(covarianceWithLocked(inverseOf(informationWithLocked(known, locked)), locked));
   if (tried.cols() == 0) {
-    return tried;
+    return Motions(6, 0);
   }
   const EigenAnalysis shares = sharesOf(tried, pulls);
   const Eigen::Index count = (shares.values.array() < kHolds).count();  // they are rising
