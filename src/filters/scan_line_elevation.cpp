@@ -36,7 +36,7 @@ float groupByElevation(const CloudView& cloud, const std::vector<float>& elevati
              : static_cast<float>(grouping.onLines()) / static_cast<float>(grouping.measurable());
 }
 
-constexpr float kHalfPi = 1.5707964F;
+constexpr auto kHalfPi = static_cast<float>(0.5 * kPi);
 /// rad: finer than scan lines lie apart.
 constexpr float kBin = static_cast<float>(0.05 * kPi / 180.0);
 

@@ -13,10 +13,10 @@ namespace {
 
 /// One standard deviation, m: what is known better is seldom held by a pattern alone, and need not be tried.
 constexpr double kWellKnown = 0.004;
-/// To either side, m: five standard deviations of a range. Farther than rings on near walls lie apart, and no farther
-/// than what a scene is made of is large.
+/// To either side, m: five standard deviations of a range. No farther than what a scene is made of is large, so that
+/// patterns whose parts lie more than twice as far apart are taken for structure.
 constexpr double kWay = 5.0 * kRangeNoise;
-/// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns less than a third.
+/// Of the growth that is promised. What holds a pose has mostly half of it and more, patterns mostly less than a third.
 constexpr double kHolds = 0.4;
 
 /// Displacements by a metre along the axes of what is known of the position that are to be tried. A turn that goes with

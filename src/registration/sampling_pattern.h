@@ -30,8 +30,10 @@ using PullsWhenMoved = std::function<Pulls(const TriedMotions& motions, const Ve
 /// position, and its pulls along all of them are looked at: how much of the growth that is promised is there, when the
 /// pose has gone some way to either side. What is drawn to the nearest part of a sampling pattern is drawn to the next
 /// part after half of the pattern's spacing: if the way is longer than that, its pull comes back nowhere, however many
-/// points have it. Where two directions are known alike, neither need be the one that only a pattern tells. \param
-/// information of independent residuals; motions translate (m) before they turn (rad) \return by a metre
+/// points have it. Where two directions are known alike, neither need be the one that only a pattern tells.
+///
+/// \param information of independent residuals; motions translate (m) before they turn (rad)
+/// \return by a metre
 [[nodiscard]] Motions motionsToldByPattern(const Matrix6& information, const DegreesOfFreedom& locked,
                                            const PullsWhenMoved& pulls);
 
