@@ -199,8 +199,7 @@ double besideSeam(double fraction, double place)
   return fraction < 0.25 && place > 0.75 ? 1.0 : fraction;
 }
 
-}  // namespace
-
+/// Of so many as are done at once, at the most.
 void timesByAzimuth(const CloudView& cloud, const ScanTiming& timing, const std::int32_t* index, std::size_t count,
                     float* times)
 {
@@ -216,6 +215,28 @@ void timesByAzimuth(const CloudView& cloud, const ScanTiming& timing, const std:
     const double place = static_cast<double>(index[n]) / static_cast<double>(cloud.size);
     const double fraction = timing.firing_order ? besideSeam(fractions[n], place) : fractions[n];
     times[n] = std::isfinite(fraction) ? static_cast<float>(fraction) : 1.0F;
+  }
+}
+
+}  // namespace
+
+void timesOf(const CloudView& cloud, const ScanTiming& timing, const std::int32_t* index, std::size_t count,
+             float* times)
+{
+  if (timing.source == ScanTimingSource::time_field) {
+    withReader(cloud.time, [&](const auto& time_of) {
+      for (std::size_t n = 0; n < count; ++n) {
+        times[n] = timing.fractionOf(time_of(cloud.point(static_cast<std::size_t>(index[n]))));
+      }
+    });
+  } else if (timing.source == ScanTimingSource::azimuth) {
+    for (std::size_t begin = 0; begin < count; begin += kTimesAtOnce) {
+      timesByAzimuth(cloud, timing, index + begin, std::min(kTimesAtOnce, count - begin), times + begin);
+    }
+  } else if (timing.valid()) {
+    for (std::size_t n = 0; n < count; ++n) {
+      times[n] = timing.at(cloud, static_cast<std::size_t>(index[n]));
+    }
   }
 }
 

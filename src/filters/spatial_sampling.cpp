@@ -58,12 +58,13 @@ void SpatialSampling::takeFirst(std::size_t count, const float* x, const float* 
   }
 }
 
-void SpatialSampling::sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample)
+void SpatialSampling::sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample,
+                             std::size_t enough)
 {
   sample.clear();
   seen_.clear();
   ReturnReader reader(returns);
-  for (ReturnBatch batch; reader.next(batch);) {
+  for (ReturnBatch batch; sample.size() < enough && reader.next(batch);) {
     takeFirst(batch.count, batch.x.data(), batch.y.data(), batch.z.data(), side,
               [&](std::size_t n) { sample.push_back(batch.point(n)); });
   }
@@ -91,18 +92,21 @@ double SpatialSampling::sideFor(const ScanReturns& returns, double per_root)
   constexpr double kSmallest = 1e-3;  // m: finer than any lidar measures
   constexpr double kGreatest = 1e3;   // m: farther than any lidar sees
   constexpr int kHalvings = 16;       // to a part in 5,000
-  std::vector<ScanPoint> points;
-  collectPoints(returns, points);
-  if (points.empty()) {
+  std::size_t count = 0;
+  ReturnReader reader(returns);
+  for (ReturnBatch batch; reader.next(batch);) {
+    count += batch.count;
+  }
+  if (count == 0) {
     return 0.0;
   }
-  const auto cells = static_cast<std::size_t>(per_root * std::sqrt(static_cast<double>(points.size())));
+  const auto cells = static_cast<std::size_t>(per_root * std::sqrt(static_cast<double>(count)));
   double small = std::log(kSmallest);
   double great = std::log(kGreatest);
   std::vector<ScanPoint> firsts;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (small + great);
-    sample(points, std::exp(middle), firsts);
+    sample(returns, std::exp(middle), firsts, cells + 1);
     (firsts.size() > cells ? small : great) = middle;
   }
   return std::exp(great);

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace pcl_floam {
@@ -19,7 +20,9 @@ public:
   /// \param[out] sample overwritten; its memory is reused
   void sample(const std::vector<ScanPoint>& points, double side, std::vector<ScanPoint>& sample);
   /// Of a scan, whose other points need not be listed, nor their times be found.
-  void sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample);
+  /// \param enough it may end with so many
+  void sample(const ScanReturns& returns, double side, std::vector<ScanPoint>& sample,
+              std::size_t enough = std::numeric_limits<std::size_t>::max());
 
   /// The side of cubes of which n returns fill about \p per_root times the root of n, m; 0 without returns.
   [[nodiscard]] double sideFor(const ScanReturns& returns, double per_root);

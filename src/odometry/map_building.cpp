@@ -1,7 +1,10 @@
 #include "odometry/map_building.h"
 
 #include "common/sweep_trajectory.h"
+#include "filters/point_times.h"
 
+#include <array>
+#include <cstddef>
 #include <utility>
 
 namespace pcl_floam {
@@ -19,13 +22,25 @@ void MapBuilding::begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sen
   world_T_keyframe_ = world_T_sensor;
 }
 
-void MapBuilding::undistort(const std::vector<ScanPoint>& measured, const SweepPose& world_T_sensor, int threads)
+/// All returns of a scan, some at a time: a list of them would be some megabytes.
+void MapBuilding::undistort(const ScanReturns& measured, const SweepPose& world_T_sensor)
 {
   const SweepTrajectory sensor(SE3(), world_T_sensor.twist, SweepTrajectory::kMiddle, world_T_sensor.acceleration);
-  all_undistorted_.resize(measured.size());
-  sensor.undistorted(measured, threads, [this](std::size_t i, const Eigen::Vector3d& place) {
-    all_undistorted_[i] = place.cast<float>();
-  });
+  all_undistorted_.clear();
+  std::array<ScanPoint, ReturnBatch::kMost> points;
+  std::array<float, ReturnBatch::kMost> times;
+  times.fill(ScanPoint().time);
+  ReturnReader reader(measured);
+  for (ReturnBatch batch; reader.next(batch);) {
+    timesOf(measured.cloud, measured.timing, batch.index.data(), batch.count, times.data());
+    for (std::size_t n = 0; n < batch.count; ++n) {
+      points[n] = batch.point(n);
+      points[n].time = times[n];
+    }
+    sensor.undistorted(points.data(), 1, batch.count, [this](std::size_t, const Eigen::Vector3d& place) {
+      all_undistorted_.push_back(place.cast<float>());
+    });
+  }
 }
 
 bool MapBuilding::takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const
@@ -63,8 +78,7 @@ bool MapBuilding::add(const CloudView& cloud, PreparedScan& scan, const SweepPos
   const bool is_keyframe = takes(world_T_sensor.middle, parameters.keyframe);
   if (is_keyframe) {
     if (map_.getParameters().see_through_range > 0.0 && keyframes_ % kKeyframesBetween == kKeyframesBetween - 1) {
-      scan.takePoints(cloud, parameters);
-      undistort(scan.points, world_T_sensor, parameters.threads);
+      undistort(scan.returnsOf(cloud, parameters), world_T_sensor);
       map_.forgetSeenThrough(all_undistorted_, world_T_sensor.middle, parameters.threads);
     }
     insert(scan.features, world_T_sensor, parameters.threads);

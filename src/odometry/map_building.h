@@ -41,7 +41,7 @@ public:
 
 private:
   [[nodiscard]] bool takes(const SE3& world_T_sensor, const KeyframePolicy& policy) const;
-  void undistort(const std::vector<ScanPoint>& measured, const SweepPose& world_T_sensor, int threads);
+  void undistort(const ScanReturns& measured, const SweepPose& world_T_sensor);
   void insert(const FeatureSet& measured, const SweepPose& world_T_sensor, int threads);
 
   KeyframeVoxelMap map_;

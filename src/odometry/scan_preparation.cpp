@@ -85,11 +85,6 @@ ScanReturns PreparedScan::returnsOf(const CloudView& scan, const OdometryParamet
           parameters.vertical_correction};
 }
 
-void PreparedScan::takePoints(const CloudView& scan, const OdometryParameters& parameters)
-{
-  collectPoints(returnsOf(scan, parameters), points);
-}
-
 void PreparedScan::takeEdges(std::vector<ScanPoint>& edges) const
 {
   edges.clear();

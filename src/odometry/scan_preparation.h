@@ -19,9 +19,8 @@ namespace pcl_floam {
 struct PreparedScan {
   ScanLines lines;
   ScanTiming timing;
-  double sweep_fraction = 0.0;    ///< duration of the sweep in periods; 0 if its points are of one instant
-  FeatureSet features;            ///< E_k and S_k as measured; none without scan lines
-  std::vector<ScanPoint> points;  ///< all returns but isolated ones, if they were asked for
+  double sweep_fraction = 0.0;  ///< duration of the sweep in periods; 0 if its points are of one instant
+  FeatureSet features;          ///< E_k and S_k as measured; none without scan lines
 
   /// \param period s, from sweep to sweep; 0 if it is not known
   void findStructure(const CloudView& scan, const OdometryParameters& parameters, double period);
@@ -30,9 +29,8 @@ struct PreparedScan {
   /// compensated
   bool assumeTimes(const CloudView& scan, const OdometryParameters& parameters);
   void takeFeatures(const CloudView& scan, const OdometryParameters& parameters);
-  /// Apart from the features, so that both can be taken at a time.
+  /// All but isolated ones; apart from the features, so that both can be taken at a time.
   [[nodiscard]] ScanReturns returnsOf(const CloudView& scan, const OdometryParameters& parameters) const;
-  void takePoints(const CloudView& scan, const OdometryParameters& parameters);
   /// E_k as points, once there are features.
   void takeEdges(std::vector<ScanPoint>& edges) const;
   /// What a map is made of where there are no scan lines, and so no features: points taken by space, as planes.

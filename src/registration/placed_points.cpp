@@ -51,6 +51,13 @@ std::size_t PlacedPoints::chunksOf(const SurfaceTerm& term, std::size_t stride)
   return (count + kMost - 1) / kMost;
 }
 
+std::size_t coarseStride(const SurfaceTerm& term)
+{
+  constexpr std::size_t kMany = 800;
+  constexpr std::size_t kOneIn = 4;
+  return term.points != nullptr && term.points->size() >= kMany ? kOneIn : 1;
+}
+
 PlacedPoints::PlacedPoints(const SweepTrajectory& sensor, const SurfaceTerm& term, std::size_t chunk,
                            std::size_t stride, FoundSurface* found)
     : begin(chunk * kMost), count(std::min((term.points->size() + stride - 1) / stride - begin, kMost))

@@ -45,21 +45,24 @@ struct PlacedPoints {
 };
 
 /// Places the points of a scan and of its edges.
-/// \param found before, at the edges
+/// \param found before, at the edges; nullptr: it is not kept
 /// \param chunk takes the number of a chunk, the edges' after the scan's, and its points; it may write what is of that
 ///              number alone
 template <typename Chunk>
 void forEachChunk(const SweepTrajectory& sensor, const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
-                  std::size_t edge_stride, std::vector<FoundSurface>& found, int threads, const Chunk& chunk)
+                  std::size_t edge_stride, FoundSurface* found, int threads, const Chunk& chunk)
 {
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
   const std::size_t chunks = of_scan + PlacedPoints::chunksOf(edges, edge_stride);
 #pragma omp parallel for num_threads(threads) schedule(dynamic)
   for (std::size_t c = 0; c < chunks; ++c) {
     chunk(c, c < of_scan ? PlacedPoints(sensor, scan, c, stride, nullptr)
-                         : PlacedPoints(sensor, edges, c - of_scan, edge_stride, found.data()));
+                         : PlacedPoints(sensor, edges, c - of_scan, edge_stride, found));
   }
 }
+
+/// Where the pose is not yet to be exact, one point in so many is enough, if there are many.
+[[nodiscard]] std::size_t coarseStride(const SurfaceTerm& term);
 
 /// m, root of the mean square, and one without points: so far a turn moves the points of a scan, per rad.
 [[nodiscard]] double rmsRange(const std::vector<ScanPoint>& points);

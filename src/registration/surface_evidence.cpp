@@ -47,7 +47,7 @@ double SurfaceEvidence::of(const SurfaceTerm& scan, const SurfaceTerm& edges, st
   if (of_points != nullptr) {
     of_points->assign(scan.points->size(), 0.0F);
   }
-  forEachChunk(sensor, scan, 1, edges, 1, found, threads, [&](std::size_t c, const PlacedPoints& placed) {
+  forEachChunk(sensor, scan, 1, edges, 1, found.data(), threads, [&](std::size_t c, const PlacedPoints& placed) {
     for (std::size_t i = 0; i < placed.count; ++i) {
       const double evidence = evidenceOf(placed.points[i], placed.surfaces[i]);
       parts[c] += evidence;

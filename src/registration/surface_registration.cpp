@@ -17,9 +17,7 @@ namespace {
 
 /// What a pose may be off where nothing is known against it, m.
 constexpr double kLeastDoubt = 0.02;
-/// The first iterations, which look far, take one point in so many, if there are enough.
-constexpr std::size_t kFirstStride = 4;
-constexpr std::size_t kManyPoints = 800;
+/// The first iterations, which look far, are coarse.
 constexpr int kLeastFirst = 2;
 constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.
@@ -45,7 +43,7 @@ public:
         of_prior_(problem.prior.information()),
         prior_(of_prior_),
         doubt_(squaredDoubt(problem)),
-        first_stride_(problem.scan.points->size() < kManyPoints ? 1 : kFirstStride),
+        first_stride_(coarseStride(problem.scan)),
         placing_(problem.prior, problem.placement),
         room_(problem.room != nullptr ? *problem.room : own_room_)
   {
@@ -79,8 +77,7 @@ private:
     const auto pulls = [this](const TriedMotions& motions, const Vector6& moved) {
       SweepEstimate there = at_;
       there.move(moved);
-      return residualsAt(there, moved * moved.transpose())
-          .pullsAlong(motions, problem_.scan, first_stride_, problem_.edges, room_);
+      return residualsAt(there, moved * moved.transpose()).pullsAlong(motions, problem_.scan, problem_.edges, room_);
     };
     const Matrix6 information = propagated(strong_.transpose(), net_) / kResidualsBesideMotion;
     by_pattern_ = motionsToldByPattern(information, problem_.locked, pulls);

@@ -113,7 +113,7 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, 
   std::vector<SurfaceSums>& parts = room.parts;
   const std::size_t of_scan = PlacedPoints::chunksOf(scan, stride);
   parts.resize(of_scan + PlacedPoints::chunksOf(edges, edge_stride));
-  forEachChunk(sensor, scan, stride, edges, edge_stride, room.edges, threads,
+  forEachChunk(sensor, scan, stride, edges, edge_stride, room.edges.data(), threads,
                [&](std::size_t c, const PlacedPoints& placed) {
                  parts[c] = SurfaceSums();
                  ChunkRows rows;
@@ -124,16 +124,19 @@ SweepSums SurfaceResiduals::sumsOf(const SurfaceTerm& scan, std::size_t stride, 
   return {totalOf(parts.begin(), middle), totalOf(middle, parts.end())};
 }
 
-Pulls SurfaceResiduals::pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, std::size_t stride,
-                                   const SurfaceTerm& edges, SurfaceRoom& room) const
+Pulls SurfaceResiduals::pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, const SurfaceTerm& edges,
+                                   SurfaceRoom& room) const
 {
-  room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, 1));
-  forEachChunk(sensor, scan, stride, edges, 1, room.edges, threads, [&](std::size_t c, const PlacedPoints& placed) {
-    ChunkPulls rows{motions, {}};
-    SurfaceSums unused;
-    addAll(placed, rows, unused);
-    room.pulls[c] = rows.pulls;
-  });
+  const std::size_t stride = coarseStride(scan);
+  const std::size_t edge_stride = coarseStride(edges);
+  room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, edge_stride));
+  forEachChunk(sensor, scan, stride, edges, edge_stride, nullptr, threads,
+               [&](std::size_t c, const PlacedPoints& placed) {
+                 ChunkPulls rows{motions, {}};
+                 SurfaceSums unused;
+                 addAll(placed, rows, unused);
+                 room.pulls[c] = rows.pulls;
+               });
   Pulls total;
   for (const Pulls& pulls : room.pulls) {
     total.against += pulls.against;

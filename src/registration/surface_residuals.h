@@ -54,9 +54,9 @@ struct SurfaceResiduals {
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                  std::size_t edge_stride, SurfaceRoom& room) const;
 
-  /// Of the same residuals along some motions of the pose alone, and all edges: of a weak direction few of them tell.
-  [[nodiscard]] Pulls pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, std::size_t stride,
-                                 const SurfaceTerm& edges, SurfaceRoom& room) const;
+  /// Of the same residuals, coarsely, along some motions of the pose alone.
+  [[nodiscard]] Pulls pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, const SurfaceTerm& edges,
+                                 SurfaceRoom& room) const;
 
 private:
   /// \tparam Rows take the residuals: of a chunk, or along some motions

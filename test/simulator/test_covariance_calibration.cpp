@@ -61,10 +61,9 @@ protected:
     PreparedScan scan;
     scan.findStructure(view, {}, 0.1);
     scan.takeFeatures(view, {});
-    scan.takePoints(view, {});
     settings_.side = settings_.side > 0.0 ? settings_.side : sampling_.sideFor(scan.returnsOf(view, {}), kCellsPerRoot);
     pcl_floam::Sweep sweep;
-    sampling_.sample(scan.points, kMapSpacing * settings_.side, sweep.dense);
+    sampling_.sample(scan.returnsOf(view, {}), kMapSpacing * settings_.side, sweep.dense);
     sampling_.sample(sweep.dense, settings_.side, sweep.sample);
     findStraightRuns(scan.returnsOf(view, {}), sweep.sample);
     scan.takeEdges(sweep.edges);
