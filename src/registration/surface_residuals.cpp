@@ -128,15 +128,13 @@ Pulls SurfaceResiduals::pullsAlong(const TriedMotions& motions, const SurfaceTer
                                    SurfaceRoom& room) const
 {
   const std::size_t stride = coarseStride(scan);
-  const std::size_t edge_stride = coarseStride(edges);
-  room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, edge_stride));
-  forEachChunk(sensor, scan, stride, edges, edge_stride, nullptr, threads,
-               [&](std::size_t c, const PlacedPoints& placed) {
-                 ChunkPulls rows{motions, {}};
-                 SurfaceSums unused;
-                 addAll(placed, rows, unused);
-                 room.pulls[c] = rows.pulls;
-               });
+  room.pulls.resize(PlacedPoints::chunksOf(scan, stride) + PlacedPoints::chunksOf(edges, 1));
+  forEachChunk(sensor, scan, stride, edges, 1, nullptr, threads, [&](std::size_t c, const PlacedPoints& placed) {
+    ChunkPulls rows{motions, {}};
+    SurfaceSums unused;
+    addAll(placed, rows, unused);
+    room.pulls[c] = rows.pulls;
+  });
   Pulls total;
   for (const Pulls& pulls : room.pulls) {
     total.against += pulls.against;

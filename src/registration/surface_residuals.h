@@ -54,7 +54,8 @@ struct SurfaceResiduals {
   [[nodiscard]] SweepSums sumsOf(const SurfaceTerm& scan, std::size_t stride, const SurfaceTerm& edges,
                                  std::size_t edge_stride, SurfaceRoom& room) const;
 
-  /// Of the same residuals, coarsely, along some motions of the pose alone.
+  /// Of the same residuals along some motions of the pose alone: of the scan's points some, but all edges, since of a
+  /// weak direction few of them tell.
   [[nodiscard]] Pulls pullsAlong(const TriedMotions& motions, const SurfaceTerm& scan, const SurfaceTerm& edges,
                                  SurfaceRoom& room) const;
 

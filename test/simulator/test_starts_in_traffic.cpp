@@ -51,14 +51,23 @@ constexpr int kScans = 26;
 /// m: half of a period's way at 25 m/s; with another motion the way would be off by several periods'.
 constexpr double kHalfAPeriod = 1.25;
 
-TEST_P(AmbiguousStarts, TheNextScansTellOrAreDoubted)
+TEST_P(AmbiguousStarts, AreToldOfUntilTheNextScansTell)
 {
+  constexpr double kJump = 0.1;  // m
   FirstScans scans(optionsOf(GetParam()));
+  bool was_provisional = false;
   for (int number = 0; number < kScans; ++number) {
     const OdometryReport& report = scans.next();
     const bool is_right = scans.motionError() < 0.3 && scans.wayError() < 1.0;
     EXPECT_TRUE(number < kSettled || is_right || report.provisional || report.state == TrackingState::doubtful)
         << number << ": " << scans.motionError() << ' ' << scans.wayError();
+    EXPECT_TRUE(report.corrected_poses.empty() || was_provisional || number < kRefined) << number;
+    EXPECT_TRUE(!saysSeveralExplain(report) || (report.provisional && number + 1 >= kRefined)) << number;
+    was_provisional = was_provisional || report.provisional;
+    if (scans.correctedBy() > kJump) {
+      EXPECT_TRUE(was_provisional) << number;
+      EXPECT_FALSE(report.reason.empty()) << number;
+    }
   }
 }
 
@@ -82,23 +91,6 @@ TEST(ManyAmbiguousStarts, HardlyOneIsLost)
     lost += is_right ? "" : " " + std::to_string(start.seed);
   }
   EXPECT_GE(found + 1, starts.size()) << "lost:" << lost;
-}
-
-TEST_P(AmbiguousStarts, AreToldOf)
-{
-  FirstScans scans(optionsOf(GetParam()));
-  constexpr double kJump = 0.1;  // m
-  bool was_provisional = false;
-  for (int number = 0; number < kScans; ++number) {
-    const OdometryReport& report = scans.next();
-    EXPECT_TRUE(report.corrected_poses.empty() || was_provisional || number < kRefined) << number;
-    EXPECT_TRUE(!saysSeveralExplain(report) || (report.provisional && number + 1 >= kRefined)) << number;
-    was_provisional = was_provisional || report.provisional;
-    if (scans.correctedBy() > kJump) {
-      EXPECT_TRUE(was_provisional) << number;
-      EXPECT_FALSE(report.reason.empty()) << number;
-    }
-  }
 }
 
 /// The other one is lost: see the README's limits.
