@@ -1,6 +1,5 @@
 #include "filters/scan_returns.h"
 
-#include "filters/point_times.h"
 #include "filters/scan_line_finders.h"
 
 #include <pcl_floam/filters/core/vertical_angle.h>
@@ -93,19 +92,6 @@ bool ScanReturns::areAtLeast(std::size_t count) const
     seen += batch.count;
   }
   return seen >= count;
-}
-
-void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points)
-{
-  points.clear();
-  points.reserve(returns.lines.valid() ? returns.lines.index.size() : returns.cloud.size);
-  ReturnReader reader(returns);
-  for (ReturnBatch batch; reader.next(batch);) {
-    for (std::size_t n = 0; n < batch.count; ++n) {
-      points.push_back(batch.point(n));
-    }
-  }
-  setTimes(returns.cloud, returns.timing, points);
 }
 
 }  // namespace pcl_floam

@@ -10,7 +10,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 namespace pcl_floam {
 
@@ -26,9 +25,6 @@ struct ScanReturns {
 
   [[nodiscard]] bool areAtLeast(std::size_t count) const;
 };
-
-/// \param[out] points overwritten; its memory is reused
-void collectPoints(const ScanReturns& returns, std::vector<ScanPoint>& points);
 
 /// Returns of one scan line that follow each other (of any, without scan lines): enough to make loops over them worth
 /// while, and few enough to stay in the first cache.
@@ -53,7 +49,7 @@ struct RangeLimits {
   float farthest;
 };
 
-/// Reads the returns in the order in which \ref collectPoints lists them.
+/// Reads the returns, line after line.
 class ReturnReader {
 public:
   explicit ReturnReader(const ScanReturns& returns);

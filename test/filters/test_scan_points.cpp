@@ -23,7 +23,8 @@ TEST(ScanPoints, WithoutScanLinesPartsOfTheSweepAreTheLasers)
   const ScanLines none;
   const ScanTiming unknown;
   std::vector<ScanPoint> points;
-  collectPoints({view, none, unknown, 0.1, 200.0, 0.0}, points);
+  constexpr double kEach = 5e-4;  // m: no two are so near each other
+  SpatialSampling().sample({view, none, unknown, 0.1, 200.0, 0.0}, kEach, points);
   ASSERT_EQ(points.size(), kPoints);
   std::map<std::uint32_t, std::size_t> curves;
   for (std::size_t i = 0; i < kPoints; ++i) {

@@ -1,4 +1,5 @@
 // How far a scan line goes on straight about a return.
+#include "filters/spatial_sampling.h"
 #include "filters/straight_runs.h"
 #include "support/constants.h"
 #include "support/synthetic_cloud.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kStep = 0.2 * kPi / 180.0;
 constexpr double kNothing = 0.0;  // m: no return
+constexpr double kEach = 5e-4;    // m: no two returns are so near each other
 
 /// With their runs.
 std::vector<ScanPoint> pointsOf(const std::vector<Return>& returns)
@@ -24,7 +26,7 @@ std::vector<ScanPoint> pointsOf(const std::vector<Return>& returns)
   const ScanTiming timing = findScanTiming(view, lines);
   const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
   std::vector<ScanPoint> points;
-  collectPoints(all, points);
+  SpatialSampling().sample(all, kEach, points);
   findStraightRuns(all, points);
   return points;
 }
