@@ -199,7 +199,7 @@ double besideSeam(double fraction, double place)
   return fraction < 0.25 && place > 0.75 ? 1.0 : fraction;
 }
 
-/// Of so many as are done at once, at the most.
+/// \param count no more than \ref kTimesAtOnce
 void timesByAzimuth(const CloudView& cloud, const ScanTiming& timing, const std::int32_t* index, std::size_t count,
                     float* times)
 {

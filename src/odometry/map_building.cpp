@@ -22,7 +22,7 @@ void MapBuilding::begin(KeyframeVoxelMap map, MapUse use, const SE3& world_T_sen
   world_T_keyframe_ = world_T_sensor;
 }
 
-/// All returns of a scan, some at a time: a list of them would be some megabytes.
+/// Some returns at a time: a list of all, with what else is known of them, would be some megabytes.
 void MapBuilding::undistort(const ScanReturns& measured, const SweepPose& world_T_sensor)
 {
   const SweepTrajectory sensor(SE3(), world_T_sensor.twist, SweepTrajectory::kMiddle, world_T_sensor.acceleration);

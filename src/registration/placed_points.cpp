@@ -53,7 +53,7 @@ std::size_t PlacedPoints::chunksOf(const SurfaceTerm& term, std::size_t stride)
 
 std::size_t coarseStride(const SurfaceTerm& term)
 {
-  constexpr std::size_t kMany = 800;
+  constexpr std::size_t kMany = 800;  // points: of fewer a part leaves directions open that all of them hold
   constexpr std::size_t kOneIn = 4;
   return term.points != nullptr && term.points->size() >= kMany ? kOneIn : 1;
 }

@@ -17,7 +17,7 @@ namespace {
 
 /// What a pose may be off where nothing is known against it, m.
 constexpr double kLeastDoubt = 0.02;
-/// The first iterations, which look far, are coarse.
+/// The first iterations, which look far, are coarse: at least and at most so many.
 constexpr int kLeastFirst = 2;
 constexpr int kMostFirst = 4;
 /// Correspondences that are needed for a pose.

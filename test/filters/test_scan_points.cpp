@@ -1,12 +1,15 @@
 // A scan's returns as registration and map take them.
 #include "filters/spatial_sampling.h"
+#include "support/listed_returns.h"
 
 #include <gtest/gtest.h>
 
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
+#include <cmath>
 #include <map>
+#include <random>
 #include <vector>
 
 namespace pcl_floam {
@@ -22,9 +25,7 @@ TEST(ScanPoints, WithoutScanLinesPartsOfTheSweepAreTheLasers)
   const CloudView view = viewOf(cloud);
   const ScanLines none;
   const ScanTiming unknown;
-  std::vector<ScanPoint> points;
-  constexpr double kEach = 5e-4;  // m: no two are so near each other
-  SpatialSampling().sample({view, none, unknown, 0.1, 200.0, 0.0}, kEach, points);
+  const std::vector<ScanPoint> points = test::listed({view, none, unknown, 0.1, 200.0, 0.0});
   ASSERT_EQ(points.size(), kPoints);
   std::map<std::uint32_t, std::size_t> curves;
   for (std::size_t i = 0; i < kPoints; ++i) {
@@ -35,6 +36,33 @@ TEST(ScanPoints, WithoutScanLinesPartsOfTheSweepAreTheLasers)
   for (const auto& curve : curves) {
     EXPECT_EQ(curve.second, kPoints / 64) << curve.first;
   }
+}
+
+/// By the whole scan, though no more of it is looked at than it takes to tell.
+TEST(SpatialSampling, FillsAsManyCubesAsAreWanted)
+{
+  constexpr double kPerRoot = 12.0;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> within(-20.0F, 20.0F);
+  pcl::PointCloud<pcl::PointXYZ> cloud;
+  while (cloud.size() < 5000) {
+    cloud.emplace_back(within(random), within(random), within(random));
+  }
+  const CloudView view = viewOf(cloud);
+  const ScanLines none;
+  const ScanTiming unknown;
+  const ScanReturns returns{view, none, unknown, 0.1, 200.0, 0.0};
+  const double count = static_cast<double>(test::listed(returns).size());
+  SpatialSampling sampling;
+  const double side = sampling.sideFor(returns, kPerRoot);
+  const auto filled = [&](double of_side) {
+    std::vector<ScanPoint> firsts;
+    sampling.sample(returns, of_side, firsts);
+    return static_cast<double>(firsts.size());
+  };
+  EXPECT_NEAR(filled(side), kPerRoot * std::sqrt(count), 0.02 * filled(side));
+  EXPECT_GT(filled(0.9 * side), kPerRoot * std::sqrt(count));
+  EXPECT_LT(filled(1.1 * side), kPerRoot * std::sqrt(count));
 }
 
 }  // namespace pcl_floam

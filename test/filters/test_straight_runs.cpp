@@ -1,7 +1,7 @@
 // How far a scan line goes on straight about a return.
-#include "filters/spatial_sampling.h"
 #include "filters/straight_runs.h"
 #include "support/constants.h"
+#include "support/listed_returns.h"
 #include "support/synthetic_cloud.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kStep = 0.2 * kPi / 180.0;
 constexpr double kNothing = 0.0;  // m: no return
-constexpr double kEach = 5e-4;    // m: no two returns are so near each other
 
 /// With their runs.
 std::vector<ScanPoint> pointsOf(const std::vector<Return>& returns)
@@ -25,8 +24,7 @@ std::vector<ScanPoint> pointsOf(const std::vector<Return>& returns)
   findScanLines(view, SensorModel(), ScanLineSource::ring_field, lines);
   const ScanTiming timing = findScanTiming(view, lines);
   const ScanReturns all{view, lines, timing, 0.1, 200.0, 0.0};
-  std::vector<ScanPoint> points;
-  SpatialSampling().sample(all, kEach, points);
+  std::vector<ScanPoint> points = listed(all);
   findStraightRuns(all, points);
   return points;
 }
