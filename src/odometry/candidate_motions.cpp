@@ -122,15 +122,29 @@ SurfaceRegistration CandidateMotions::begin(const std::vector<Sweep>& kept)
   const Candidate candidate = waiting_.front();
   waiting_.pop_front();
   Track track(directions_[candidate.direction]);
-  SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds});
+  SurfaceRegistration found = track.begin(kept[0], kept[1], {candidate.motion, kOff, kRounds, candidate.rests});
   if (found.report.hasConverged()) {
     const Vector6 twist = track.fractionOf(kept[0]) * track.motion().velocity();
     late_.emplace(std::move(track), found);
     late_->poses = {{SE3(), twist}, late_->track.pose()};
     late_->evidences.assign(2, late_->track.evidence());
     late_->place_evidences.resize(2);
+    if (!late_->is_beginning_told) {
+      supposeRest(candidate);
+    }
   }
   return found;
+}
+
+/// What two sweeps do not tell of, a registration leaves where it happened to begin, or where noise led to. Most that
+/// carries a lidar begins at rest.
+void CandidateMotions::supposeRest(Candidate candidate)
+{
+  if (std::find(with_rest_.begin(), with_rest_.end(), candidate.direction) == with_rest_.end()) {
+    with_rest_.push_back(candidate.direction);
+    candidate.rests = true;
+    waiting_.push_front(candidate);
+  }
 }
 
 /// Whether the third sweep tells of another motion than the first two: at some ten sweeps a second nothing that carries

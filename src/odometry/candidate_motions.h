@@ -43,12 +43,14 @@ private:
   struct Candidate {
     Vector6 motion;
     std::size_t direction = 0;  // of time
+    bool rests = false;         // along what the first two sweeps do not tell of
   };
 
   void enqueue();
   [[nodiscard]] bool isGivenUp(double direction) const;
   bool look(WorkShare& share);
   SurfaceRegistration begin(const std::vector<Sweep>& kept);
+  void supposeRest(Candidate candidate);
   [[nodiscard]] bool hasJumped(const std::vector<Sweep>& kept) const;
   void compare(const std::vector<Sweep>& kept, Hypotheses& hypotheses);
 
@@ -56,6 +58,7 @@ private:
   std::vector<TrackSettings> directions_;
   std::vector<double> given_up_;  // directions
   std::vector<Vector6> enqueued_;
+  std::vector<std::size_t> with_rest_;  // directions in which a candidate rests
   std::deque<Candidate> waiting_;
   std::optional<Hypothesis> late_;
 };

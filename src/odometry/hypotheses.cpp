@@ -14,11 +14,14 @@ namespace {
 /// So many are followed for each direction of time.
 constexpr std::ptrdiff_t kMostOfADirection = 4;
 
-/// Whether the first motions of two are one: then a single one is followed.
+/// Whether the first motions of two are one: then a single one is followed. A registration finds either from the other
+/// where the sweeps tell of it; else each stays where it is.
 bool haveBegunAlike(const Hypothesis& a, const Hypothesis& b)
 {
-  constexpr double kSame = 0.5;  // m
-  return (a.poses[1].middle.translation - b.poses[1].middle.translation).norm() < kSame;
+  constexpr double kFound = 0.5;  // m
+  constexpr double kStays = 0.05;
+  const double same = a.is_beginning_told && b.is_beginning_told ? kFound : kStays;
+  return (a.poses[1].middle.translation - b.poses[1].middle.translation).norm() < same;
 }
 
 /// Of a track, where it was when that which evidence tells of began.

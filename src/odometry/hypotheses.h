@@ -20,7 +20,10 @@ constexpr std::size_t kMostKept = 96;
 
 /// A track among others.
 struct Hypothesis {
-  Hypothesis(Track begun, const SurfaceRegistration& found) : track(std::move(begun)), last(found) {}
+  Hypothesis(Track begun, const SurfaceRegistration& found)
+      : track(std::move(begun)), last(found), is_beginning_told(found.report.weak_directions.empty())
+  {
+  }
 
   /// Takes the next sweep, and with it what others need to compare themselves, if \p keeps_poses. Its map takes the
   /// sweep in if rivals are motions.
@@ -32,6 +35,7 @@ struct Hypothesis {
   /// Of the places of each sweep, while rivals are motions; empty where it is not needed.
   std::vector<std::vector<float>> place_evidences;
   SurfaceRegistration last;
+  bool is_beginning_told = true;  ///< of all directions
   bool is_lost = false;
   std::size_t number = 0;
   std::size_t without_trace = 0;  ///< first sweeps that did not tell of a direction

@@ -42,7 +42,8 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found, const UsualExplana
 }
 
 /// Whether a sweep enters the map that a track registers with.
-bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSettings& settings)
+/// \param is_new it shows what the map has not seen even if it has not moved
+bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSettings& settings, bool is_new = false)
 {
   constexpr double kSides = 0.3;  // of the finest cells: much nearer, a sweep tells the map nothing new
   constexpr double kTurn = 0.1;   // rad
@@ -50,7 +51,7 @@ bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSetti
     return settings.components.is_keyframe(last_keyframe, pose);
   }
   const SE3 moved = last_keyframe.inverse() * pose;
-  return moved.translation.norm() > kSides * settings.side || rotationAngle(moved.rotation) > kTurn;
+  return is_new || moved.translation.norm() > kSides * settings.side || rotationAngle(moved.rotation) > kTurn;
 }
 
 }  // namespace
@@ -213,7 +214,9 @@ void Track::update(const Sweep& sweep, const SurfaceRegistration& registration, 
   } else {
     explanation_.take(registration.explained());
   }
-  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_);
+  // Of motions that compete none must explain more only because a sensor that moves less has less in its map.
+  const bool is_new = rivals == Rivals::motions && sweep.is_pattern_new;
+  is_keyframe_ = sweeps_to_wait_ == 0 && keeps_map_ && becomesKeyframe(keyframe_, pose_.middle, settings_, is_new);
   sweeps_to_wait_ = std::max(0, sweeps_to_wait_ - 1);
 }
 

@@ -29,6 +29,7 @@ struct FirstLook {
   Vector6 velocity = Vector6::Zero();  ///< per period
   double far = 0.0;                    ///< m, that it may be off
   int rounds = 1;                      ///< each looks half as far as the one before
+  bool rests = false;                  ///< along what the sweeps do not tell of; else that stays as it is
 };
 
 /// Predict, register, judge, update.

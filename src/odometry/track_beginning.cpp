@@ -7,7 +7,7 @@ namespace pcl_floam {
 
 namespace {
 
-/// Of a pose that a single motion has led to, for so many periods: one that is not known at all.
+/// Of a pose that a single motion has led to, for so many periods: hardly known, by a metre and a radian a period.
 Matrix12 oneMotion(double periods)
 {
   constexpr double kRest = 1e-6;  // by how much it may be another at the end
@@ -36,11 +36,12 @@ SurfaceRegistration Track::findMotion(const Sweep& first, const Sweep& second, c
     const Vector6 motion = log(first_T_second) / second.periods;
     beginMap();
     map_->insert(first, {SE3(), fractionOf(first) * motion});
-    motion_ = MotionEstimate(SE3(), motion);
+    motion_ = MotionEstimate(SE3(), look.rests ? Vector6(Vector6::Zero()) : look.velocity);
     motion_.predict(second.periods);
     SurfaceProblem problem = problemFor(second);
+    problem.begins_off << first_T_second.translation - problem.prior.pose.translation,
+        logSO3(first_T_second.rotation * problem.prior.pose.rotation.transpose());
     problem.guess_covariance = guessCovarianceOf({far, kTurnPerMetre * far});
-    problem.prior.pose_counts = false;
     problem.prior.covariance = oneMotion(second.periods);
     const bool is_last = round + 1 == look.rounds;
     problem.evidence = is_last ? Evidence::total : Evidence::none;

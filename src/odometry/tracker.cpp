@@ -82,6 +82,8 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
   if (settings_.side == 0.0) {
     settings_.side = sampling_.sideFor(returns, kCellsPerRoot);
   }
+  const bool is_single_layer = returns.lines.failure == ScanLineFailure::single_layer;
+  sweep.is_pattern_new = !returns.lines.valid() && !is_single_layer;
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
   if (settings_.components.select_points) {
     sweep.sample.clear();

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace pcl_floam::test {
@@ -158,6 +159,78 @@ TEST(Track, SweepsOfKnownPosesMakeAMapToGoOnFrom)
   before.fraction = -before.fraction;
   EXPECT_TRUE(back.step(before).report.hasConverged());
   EXPECT_LT(error(back.pose().middle, 2), 0.02);
+}
+
+/// Where the pattern is another in each sweep, a sensor at rest sees more and more, which makes up its map: else
+/// motions that compete would explain the more, the more they move.
+TEST(Track, AtRestAMapTakesInWhatAPatternHasNotShown)
+{
+  TrackSettings settings;
+  settings.side = 0.2;
+  Tracker tracker(settings);
+  Sweep sweep = sweepOf(toCloud(sweepRoom(Room(), Lidar(), [](double) { return SE3(); })), tracker);
+  for (const bool is_new : {false, true}) {
+    for (const bool has_own_rule : {false, true}) {
+      sweep.is_pattern_new = is_new;
+      settings.components.is_keyframe = {};
+      if (has_own_rule) {
+        settings.components.is_keyframe = [](const SE3&, const SE3&) { return false; };
+      }
+      Track track(settings);
+      ASSERT_TRUE(track.begin(sweep, sweep, {Vector6::Zero(), 0.25}).report.hasConverged());
+      for (const Rivals rivals : {Rivals::motions, Rivals::none}) {
+        ASSERT_TRUE(track.step(sweep, rivals).report.hasConverged());
+        EXPECT_EQ(track.isKeyframe(), is_new && rivals == Rivals::motions && !has_own_rule);
+      }
+    }
+  }
+}
+
+/// A scan between smooth walls, which has its rings nowhere in particular.
+pcl::PointCloud<PointXYZIRT> betweenWalls(const SE3& world_T_sensor, std::mt19937& random)
+{
+  Room passage;
+  passage.walls = {{-60.0, -1.5, -1.7}, {60.0, 1.7, 1.5}};
+  passage.furniture.clear();
+  Lidar lidar;
+  lidar.lowest += std::uniform_real_distribution<double>(0.0, 2.0)(random);  // degrees
+  std::normal_distribution<double> noise(0.0, 0.01);                         // m
+  std::vector<Return> returns = sweepRoom(passage, lidar, [&](double) { return world_T_sensor; });
+  for (Return& r : returns) {
+    r.point *= 1.0 + noise(random) / r.point.norm();
+  }
+  return toCloud(returns);
+}
+
+/// Two sweeps there tell of all but the way along the walls.
+TEST(Track, WhatTwoSweepsDoNotTellOfStaysAsItIsOrRests)
+{
+  constexpr double kAlong = 0.3;  // m, as the search has it
+  std::mt19937 random(1);
+  const SE3 away = exp((Vector6() << 0.2, 0.05, 0.0, 0.0, 0.0, 0.03).finished());
+  TrackSettings settings;
+  settings.side = 0.2;
+  Tracker tracker(settings);
+  Sweep first = sweepOf(betweenWalls(SE3(), random), tracker);
+  Sweep second = sweepOf(betweenWalls(away, random), tracker);
+  for (Sweep* sweep : {&first, &second}) {
+    sweep->edges.clear();
+    sweep->fraction = 0.0;
+  }
+  FirstLook look;
+  look.velocity[0] = kAlong;
+  look.far = 0.25;
+  look.rounds = 2;
+  for (const bool rests : {false, true}) {
+    look.rests = rests;
+    const SurfaceRegistration found = Track(settings).begin(first, second, look);
+    ASSERT_TRUE(found.report.hasConverged());
+    ASSERT_EQ(found.report.weak_directions.size(), 1U);
+    const SE3& moved = found.report.target_T_source;
+    EXPECT_NEAR(moved.translation.x(), rests ? 0.0 : kAlong, 0.01);
+    EXPECT_NEAR(moved.translation.y(), away.translation.y(), 0.01) << "of this they tell";
+    EXPECT_NEAR(logSO3(moved.rotation).z(), 0.03, 0.002);
+  }
 }
 
 }  // namespace pcl_floam::test

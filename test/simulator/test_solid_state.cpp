@@ -118,4 +118,42 @@ TEST(SolidStateOdometry, IsFollowedWithoutBeingTold)
   }
 }
 
+/// Its door frames are few of the points, and what two sweeps show of them is less than their noise: until more has
+/// been seen, any motion along it explains these about as well.
+TEST(SolidStateOdometry, FindsItsWayAlongACorridorFromRest)
+{
+  SimulationOptions options = testWorld("corridor", "avia");
+  for (const unsigned seed : {1U, 2U}) {
+    options.seed = seed;
+    Simulation simulation(options);
+    Odometry<PointXYZIRT> odometry;
+    SE3 error;
+    SE3 world_T_first;
+    for (std::size_t i = 0; i < 40; ++i) {
+      const Sweep sweep = simulation.sweep(i);
+      world_T_first = i == 0 ? sweep.world_T_end : world_T_first;
+      const OdometryReport& report = odometry.track(sweep.cloud, sweep.start_time);
+      error = (world_T_first.inverse() * sweep.world_T_end).inverse() * report.world_T_sensor;
+    }
+    EXPECT_LT(error.translation.norm(), 0.1) << seed;
+  }
+}
+
+/// Smooth walls tell nothing of the way, so that one does not move is as good as anything, and better than to run off.
+TEST(SolidStateOdometry, StandsStillWhereNothingTellsThatItMoves)
+{
+  SimulationOptions options = testWorld("tunnel", "hap");
+  for (const unsigned seed : {1U, 2U}) {
+    options.seed = seed;
+    Simulation simulation(options);
+    Odometry<PointXYZIRT> odometry;
+    for (std::size_t i = 0; i < 40; ++i) {
+      const Sweep sweep = simulation.sweep(i);
+      const OdometryReport& report = odometry.track(sweep.cloud, sweep.start_time);
+      EXPECT_FALSE(report.state == TrackingState::tracked && !report.provisional) << seed << ", scan " << i;
+      EXPECT_LT(report.world_T_sensor.translation.norm(), 1.0) << seed << ", scan " << i;
+    }
+  }
+}
+
 }  // namespace pcl_floam::simulator
