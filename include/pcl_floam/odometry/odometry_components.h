@@ -21,8 +21,8 @@ struct OdometryComponents {
   std::vector<PoseFactor::ConstPtr> factors;
 
   /// Which scans enter the map that is registered with. By default, by surfaces, those 0.3 cells or 0.1 rad apart; by
-  /// features as OdometryParameters::keyframe says. By surfaces, of those of which the map explains at
-  /// least half as much as usual, but for starts.
+  /// features as OdometryParameters::keyframe says. By surfaces, of those of which the map explains at least half as
+  /// much as usual, but for starts: while motions compete there, also all scans of a lidar without scan lines.
   KeyframeRule is_keyframe;
 
   /// Chooses the returns that are registered from those that may enter the map (engine `surfaces`). By default one of
