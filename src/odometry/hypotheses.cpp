@@ -15,11 +15,11 @@ namespace {
 constexpr std::ptrdiff_t kMostOfADirection = 4;
 
 /// Whether the first motions of two are one: then a single one is followed. A registration finds either from the other
-/// where the sweeps tell of it; else each stays where it is.
+/// where the sweeps tell of it; else each stays where it is, and they are one if hardly more than noise apart.
 bool haveBegunAlike(const Hypothesis& a, const Hypothesis& b)
 {
-  constexpr double kFound = 0.5;  // m
-  constexpr double kStays = 0.05;
+  constexpr double kFound = 0.5;   // m
+  constexpr double kStays = 0.05;  // m
   const double same = a.is_beginning_told && b.is_beginning_told ? kFound : kStays;
   return (a.poses[1].middle.translation - b.poses[1].middle.translation).norm() < same;
 }

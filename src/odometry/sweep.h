@@ -24,7 +24,7 @@ struct Sweep {
   /// Duration in periods; 0 if its points are of one instant, less than 0 if time is followed backwards.
   double fraction = 1.0;
   bool is_direction_known = true;  ///< of time: else it may run the other way, or the points may be of one instant
-  bool is_pattern_new = false;     ///< even from one place it looks elsewhere than those before
+  bool is_pattern_new = false;     ///< not drawn again and again, as rings are: it looks elsewhere
   std::optional<MotionHint> hint;  ///< of the motion since the sweep before
   PoseFactors factors;             ///< what else is known of its pose
 };

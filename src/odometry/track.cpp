@@ -42,7 +42,7 @@ SurfaceRegistration unlessByChance(SurfaceRegistration found, const UsualExplana
 }
 
 /// Whether a sweep enters the map that a track registers with.
-/// \param is_new it shows what the map has not seen even if it has not moved
+/// \param is_new it shows what the map has not seen, though the sensor has not moved
 bool becomesKeyframe(const SE3& last_keyframe, const SE3& pose, const TrackSettings& settings, bool is_new = false)
 {
   constexpr double kSides = 0.3;  // of the finest cells: much nearer, a sweep tells the map nothing new

@@ -7,7 +7,8 @@ namespace pcl_floam {
 
 namespace {
 
-/// Of a pose that a single motion has led to, for so many periods: hardly known, by a metre and a radian a period.
+/// Of a pose that a single motion has led to, for so many periods: hardly known. Its standard
+/// deviation is a metre and a radian a period: what tells anything at all outweighs it.
 Matrix12 oneMotion(double periods)
 {
   constexpr double kRest = 1e-6;  // by how much it may be another at the end

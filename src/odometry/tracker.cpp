@@ -82,6 +82,7 @@ void Tracker::sample(const ScanReturns& returns, Sweep& sweep)
   if (settings_.side == 0.0) {
     settings_.side = sampling_.sideFor(returns, kCellsPerRoot);
   }
+  // What scans a single layer draws that again and again.
   const bool is_single_layer = returns.lines.failure == ScanLineFailure::single_layer;
   sweep.is_pattern_new = !returns.lines.valid() && !is_single_layer;
   dense_.sample(returns, kMapSpacing * settings_.side, sweep.dense);
